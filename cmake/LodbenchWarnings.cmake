@@ -1,0 +1,13 @@
+# Warnings as a target: link lodbench_warnings (PRIVATE) and get them all.
+add_library(lodbench_warnings INTERFACE)
+target_compile_options(lodbench_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align=strict
+  -Wnull-dereference -Wduplicated-cond -Wlogical-op -Wimplicit-fallthrough -Wextra-semi
+  $<$<BOOL:${LODBENCH_WERROR}>:-Werror>)
+
+# Contraction of a*b+c into one rounding would make results depend on the compiler's mood.
+add_compile_options(-ffp-contract=off)
+if(LODBENCH_SANITIZE)
+  add_compile_options(-fsanitize=${LODBENCH_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${LODBENCH_SANITIZE})
+endif()

@@ -1,0 +1,24 @@
+#pragma once
+// The three classes of error that the project knows.
+
+#include <stdexcept>
+#include <string>
+
+namespace lodbench {
+
+/// A user's mistake: names file, line, value and remedy. The command ends with exit status 2.
+struct InputError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// An environment's refusal (no GPU, no disk, no memory): says what was tried.
+struct EnvironmentError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A programmer's mistake, a plugin author's included: says what was expected.
+struct ContractError : std::logic_error {
+    using std::logic_error::logic_error;
+};
+
+}  // namespace lodbench

@@ -1,0 +1,37 @@
+#pragma once
+// The only door to a GL context: EGL, a hardware device first, surfaceless software as fallback.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lodbench::platform {
+
+/// One EGL device as `lodbench list --devices` shows it.
+struct DeviceEntry {
+    int number = 0;
+    std::string name;      ///< renderer where it can be asked, else the driver's file or "software"
+    bool software = false;
+};
+
+[[nodiscard]] std::vector<DeviceEntry> list_devices();
+
+/// An OpenGL 4.5 core debug context without a surface, current on the creating thread until destroyed.
+class Context {
+public:
+    /// `device`: "" for the best (hardware, then software), a number of list_devices(), or a part of a
+    /// name. Throws EnvironmentError with everything that was tried and what each attempt said.
+    explicit Context(const std::string& device = "");
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    /// What was chosen, in words.
+    [[nodiscard]] const std::string& description() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lodbench::platform

@@ -1,0 +1,71 @@
+#pragma once
+// One cell of a campaign: method x scenario x setting x repetition, and what came of it.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "measure/statistics.h"
+#include "run/plugin_library.h"
+#include "run/vital_signs.h"
+#include "scenario/scenario.h"
+
+namespace lodbench::run {
+
+/// All that a child process needs to know.
+struct CellSpec {
+    std::string id;  ///< file-name safe, unique in the campaign: "lindstrom__tau=1__demo__r0"
+    std::filesystem::path scenario_file;  ///< copy in the results folder
+    std::filesystem::path scenario_base;  ///< where the scenario's relative files are relative to
+    scenario::Overrides overrides;
+    std::string method;
+    std::filesystem::path plugin;
+    std::vector<std::pair<std::string, std::string>> settings;
+    int repetition = 0;
+    std::uint64_t seed = 1;
+    std::string device;  ///< as for platform::Context
+    std::filesystem::path out;  ///< results folder
+};
+
+enum class CellStatus { ok, skipped, failed, crashed, timeout };
+
+template <typename T>
+struct Range {
+    double mean = 0;
+    T min{}, max{};
+};
+
+/// One row of frames/<cell>.csv. Counts come from the lockstep replay, times from the timing replay.
+struct FrameRecord {
+    int frame = 0;
+    double wall_ms = 0, select_ms = 0, submit_ms = 0, cpu_ms = 0;
+    std::optional<double> gpu_ms;
+    std::optional<std::uint64_t> triangles, draw_calls, uploaded_bytes, triangles_nondegenerate;
+};
+
+/// What a cell measured; every absent value is null in cells.jsonl.
+struct CellResult {
+    CellStatus status = CellStatus::failed;
+    std::string reason;  ///< names plugin and call; empty when ok
+    std::vector<FrameRecord> frames;
+    double prepare_s = 0, prepare_cpu_s = 0, upload_s = 0;
+    std::optional<std::uint64_t> gpu_bytes, peak_rss_bytes;
+    std::uint64_t samples_served = 0;
+    Counters counters;      ///< means over the frames of the lockstep replay
+    std::string depth_hash; ///< at the randomly chosen frame, lockstep
+    std::string terrain_name, terrain_checksum;
+    std::optional<double> claimed_px;
+    std::vector<std::string> warnings;
+    // Context as the child saw it.
+    std::string gl_vendor, gl_renderer, gl_version, device_description;
+    bool software = false;
+    std::string timer_verdict;
+};
+
+/// Flies one cell in this process: load, prepare, timing replay, lockstep replay, shots. Throws nothing:
+/// whatever goes wrong is in the result. Reports each call and frame to `signs`.
+[[nodiscard]] CellResult fly_cell(const CellSpec& spec, VitalSigns& signs);
+
+}  // namespace lodbench::run

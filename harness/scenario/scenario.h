@@ -1,0 +1,71 @@
+#pragma once
+// A scenario: what is flown, how, over what, and what is measured. Read from TOML.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "api/camera.h"
+#include "api/method.h"
+#include "scenario/flight_path.h"
+#include "terrain/height_field.h"
+
+namespace lodbench::scenario {
+
+/// A method with its settings as written: text values, checked against the method's parameter specs
+/// when its plugin is known. A parameter with several values is swept.
+struct MethodRequest {
+    std::string id;
+    std::vector<std::pair<std::string, std::vector<std::string>>> settings;
+    std::string where;  ///< "file.toml:31" or "--set lindstrom.tau=1"
+};
+
+struct MeasureOptions {
+    int every = 10;           ///< measure every n-th frame of the lockstep replay; >= 1
+    std::vector<int> shots;   ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
+    double budget_ms = 16.67; ///< for the jank sum
+};
+
+struct Scenario {
+    std::string name;  ///< [A-Za-z0-9_-]+, the file's stem unless given
+    std::string text;  ///< the TOML as read, for the record
+    terrain::TerrainSource terrain;
+    Viewport viewport;
+    double vertical_fov = 1.0471975511965976;  ///< radians
+    double near_plane = 1.0;                   ///< metres
+    int frames = 120;                          ///< >= 1
+    int warmup_frames = 5;                     ///< >= 0
+    double rate_hz = 60;                       ///< simulated frames per second
+    int repetitions = 3;                       ///< >= 1
+    std::uint64_t seed = 1;
+    double cell_time_limit_s = 600;
+    double frame_time_limit_s = 60;            ///< no sign of life for so long is a hang
+    std::uint64_t memory_limit_bytes = 8ULL << 30;
+    MeasureOptions measure;
+    PathSpec path;
+    std::vector<MethodRequest> methods;  ///< empty: all methods that were found
+};
+
+/// What the command line overrides.
+struct Overrides {
+    std::optional<int> frames;
+    std::optional<Viewport> viewport;
+    std::optional<std::uint64_t> seed;
+    std::optional<int> repetitions;
+};
+
+/// Parses a scenario. Relative files in it are relative to the scenario's folder. Caps file size (1 MiB),
+/// line length (4096 bytes) and nesting before the TOML parser sees the text. Throws InputError as
+/// "FILE:LINE: what VALUE is wrong with; remedy"; an unknown key is an error that lists the known ones.
+[[nodiscard]] Scenario parse_scenario(std::string_view text, const std::filesystem::path& file);
+
+/// The same from a file, parsed in a child process first, so that a parser that dies costs a message only.
+[[nodiscard]] Scenario load_scenario(const std::filesystem::path& file);
+
+void apply(const Overrides& overrides, Scenario& scenario);
+
+}  // namespace lodbench::scenario

@@ -1,0 +1,52 @@
+#pragma once
+// A terrain in memory, and where terrains come from.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/terrain.h"
+
+namespace lodbench::terrain {
+
+/// A height field held in memory, row by row, row 0 the north edge.
+class HeightField final : public Terrain {
+public:
+    /// `info` needs name, rows, columns, spacing, origin, void_count; the height range and the checksum are
+    /// computed. Throws InputError for a grid under 2 x 2, a spacing that is not positive and finite, or a
+    /// height that is not finite (naming row, column and value); ContractError where the number of heights
+    /// is not rows * columns.
+    HeightField(TerrainInfo info, std::vector<float> heights);
+    [[nodiscard]] std::span<const float> samples() const { return heights_; }
+
+private:
+    void copy_samples(const SampleRect& rect, std::span<float> heights) const override;
+    std::vector<float> heights_;
+};
+
+/// What names a terrain, in a scenario or on the command line: either a file or a synthetic form.
+/// Everything optional overrides what the file (or its sidecar) says.
+struct TerrainSource {
+    std::filesystem::path file;  ///< raster; empty for a synthetic terrain
+    std::string synthetic;       ///< plane, ramp, sphere-cap, bump, step, ridged; empty for a file
+    int rows = 1025;             ///< synthetic only
+    int columns = 1025;          ///< synthetic only
+    std::uint64_t seed = 1;      ///< synthetic only
+    std::map<std::string, double> shape;  ///< synthetic only: parameters of the form, in metres
+
+    std::optional<double> spacing_x, spacing_y;  ///< metres
+    std::optional<double> vertical_scale;        ///< metres per unit of the file
+    std::optional<double> vertical_offset;       ///< metres, added after scaling
+    std::optional<double> origin_x, origin_y;    ///< metres, of the south-west sample
+    std::optional<double> no_data;               ///< in units of the file
+    std::string where;  ///< "scenario.toml:12", put in front of messages; may be empty
+};
+
+/// Reads or makes the terrain. Throws InputError with file, value and remedy.
+[[nodiscard]] std::unique_ptr<HeightField> load_terrain(const TerrainSource& source);
+
+}  // namespace lodbench::terrain
