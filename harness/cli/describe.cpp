@@ -1,0 +1,7 @@
+#include "cli/commands.h"
+
+namespace lodbench::cli {
+
+void add_describe(CLI::App&, int&) {}
+
+}  // namespace lodbench::cli
