@@ -12,5 +12,6 @@ if(LODBENCH_WITH_GDAL)
   find_package(GDAL REQUIRED)
 endif()
 if(LODBENCH_WITH_OIIO)
-  find_package(OpenImageIO REQUIRED)
+  # Its CMake package names programs that Debian ships apart (openimageio-tools); pkg-config does not.
+  pkg_check_modules(oiio REQUIRED IMPORTED_TARGET GLOBAL OpenImageIO)
 endif()
