@@ -1,0 +1,251 @@
+#include "run/stage.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+
+#include "gl/frame_blocks.h"
+#include "gl/state.h"
+
+namespace lodbench::run {
+
+namespace {
+
+constexpr float kSky[] = {0.62F, 0.74F, 0.88F, 1.0F};
+
+MethodInfo find_method(const PluginLibrary& library, const StageSetup& setup) {
+    for (MethodInfo& info : library.methods()) {
+        if (info.id == setup.method) return info;
+    }
+    throw InputError(fmt::format("plugin {} holds no method '{}'; `lodbench list` shows what it holds",
+                                 setup.plugin.string(), setup.method));
+}
+
+}  // namespace
+
+Stage::Stage(StageSetup setup, VitalSigns& signs)
+    : setup_(std::move(setup)),
+      signs_(signs),
+      context_(std::make_unique<platform::Context>(setup_.device)),
+      device_(std::make_unique<gl::Device>()),
+      library_((signs.enter(Call::open_plugin), setup_.plugin)) {
+    signs_.enter(Call::none);
+    info_ = find_method(library_, setup_);
+    params_ = make_params(info_, setup_.settings, "settings of " + setup_.method);
+    for (const std::string& extension : info_.gl_extensions) {
+        if (!device_->has_extension(extension)) {
+            throw MethodSkipped(fmt::format("method '{}' needs {}, which {} does not have", info_.id,
+                                            extension, device_->info().renderer));
+        }
+    }
+    frame_block_ = gl::Buffer(*device_, "host: Frame", sizeof(gl::Frame));
+    frozen_block_ = gl::Buffer(*device_, "host: Frozen", sizeof(gl::Frozen));
+    guarded(Call::create, [&] { method_ = library_.create(info_.id, params_); });
+}
+
+Stage::~Stage() {
+    if (uploaded_) {
+        // Only on the way out of a failure: a second one changes nothing any more.
+        try {
+            release();
+        } catch (const std::exception&) {
+        }
+    }
+    signs_.enter(Call::destroy);
+    method_.reset();
+    signs_.enter(Call::none);
+}
+
+void Stage::guarded(Call call, const std::function<void()>& body) {
+    const std::string plugin = setup_.plugin.filename().string();
+    std::optional<gl::PipelineState> before;
+    if (check_state_) before = gl::PipelineState::capture();
+    signs_.enter(call);
+    try {
+        body();
+    } catch (const std::exception& error) {
+        throw MethodFailure(
+            fmt::format("{} of plugin {} threw: {}", name_of(call), plugin, error.what()));
+    } catch (...) {
+        throw MethodFailure(
+            fmt::format("{} of plugin {} threw something that is not a std::exception",
+                        name_of(call), plugin));
+    }
+    signs_.enter(Call::none);
+    if (const auto errors = device_->take_errors(); !errors.empty()) {
+        throw MethodFailure(fmt::format("{} of plugin {} raised {} GL error{}, the first: {}",
+                                        name_of(call), plugin, errors.size(),
+                                        errors.size() == 1 ? "" : "s", errors.front()));
+    }
+    if (before) {
+        const auto differences = gl::PipelineState::capture().differences(*before);
+        if (!differences.empty()) {
+            before->restore();
+            throw MethodFailure(fmt::format("{} of plugin {} left GL state changed: {}",
+                                            name_of(call), plugin, fmt::join(differences, "; ")));
+        }
+    }
+}
+
+void Stage::prepare() {
+    guarded(Call::prepare, [&] { method_->prepare(*setup_.terrain, *device_); });
+}
+
+void Stage::upload() {
+    uploaded_ = true;
+    guarded(Call::upload, [&] { method_->upload(*device_); });
+}
+
+void Stage::resize(const Viewport& viewport) {
+    if (viewport == viewport_) return;
+    viewport_ = viewport;
+    framebuffer_ = {};
+    color_ = gl::Texture(*device_, "host: color", GL_TEXTURE_2D, GL_RGBA8, viewport.width,
+                         viewport.height);
+    depth_ = gl::Texture(*device_, "host: depth", GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F,
+                         viewport.width, viewport.height);
+    framebuffer_ = gl::Framebuffer(*device_, "host: picture", &color_, &depth_);
+    set_pipeline_state();
+    guarded(Call::resize, [&] { method_->resize(viewport); });
+}
+
+void Stage::select(const Camera& camera, const Clock& clock) {
+    camera_ = camera;
+    const gl::Frozen frozen = gl::make_frozen(camera, setup_.terrain->info());
+    frozen_block_.write(0, sizeof frozen, &frozen);
+    frozen_block_.bind_uniform(gl::kFrozenBinding);
+    guarded(Call::select, [&] { method_->select(camera, clock); });
+}
+
+void Stage::settle() {
+    guarded(Call::settle, [&] { method_->settle(); });
+}
+
+void Stage::pause_background() {
+    guarded(Call::pause_background, [&] { method_->pause_background(); });
+}
+
+void Stage::resume_background() {
+    guarded(Call::resume_background, [&] { method_->resume_background(); });
+}
+
+Counters Stage::counters() {
+    Counters result;
+    guarded(Call::counters, [&] { result = method_->counters(); });
+    return result;
+}
+
+void Stage::release() {
+    uploaded_ = false;
+    guarded(Call::release, [&] { method_->release(*device_); });
+}
+
+void Stage::set_pipeline_state() {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glViewport(0, 0, viewport_.width, viewport_.height);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_STENCIL_TEST);
+    // Strips and mapped grids turn their triangles either way round; a terrain is seen from both sides.
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_RASTERIZER_DISCARD);
+    glDisable(GL_PRIMITIVE_RESTART);
+    glDisable(GL_POLYGON_OFFSET_LINE);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    for (GLenum i = 0; i < 4; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
+}
+
+void Stage::fill_blocks(const View& view, bool wireframe) {
+    const gl::Frame frame = gl::make_frame(view, camera_, setup_.terrain->info(), wireframe);
+    frame_block_.write(0, sizeof frame, &frame);
+    frame_block_.bind_uniform(gl::kFrameBinding);
+    frozen_block_.bind_uniform(gl::kFrozenBinding);
+}
+
+void Stage::draw(const View& view) {
+    set_pipeline_state();
+    const float farthest = 0.0F;
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, kSky);
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &farthest);
+    fill_blocks(view, false);
+    guarded(Call::draw, [&] { method_->draw(view); });
+}
+
+void Stage::draw_picture(bool wireframe) {
+    const View view = picture_view(camera_);
+    draw(view);
+    if (!wireframe) return;
+    fill_blocks(view, true);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    // Depth is reversed: a positive offset is towards the eye.
+    glEnable(GL_POLYGON_OFFSET_LINE);
+    glPolygonOffset(1.0F, 1.0F);
+    guarded(Call::draw, [&] { method_->draw(view); });
+    set_pipeline_state();
+}
+
+measure::CapturedSurface Stage::capture() {
+    const measure::CaptureView view = measure::capture_view(camera_, setup_.terrain->info());
+    set_pipeline_state();
+    fill_blocks(view.view, false);
+    return measure::capture(*device_, view,
+                            [&] { guarded(Call::draw, [&] { method_->draw(view.view); }); });
+}
+
+std::uint64_t Stage::count_primitives() {
+    set_pipeline_state();
+    fill_blocks(picture_view(camera_), false);
+    gl::Query query(*device_, "host: primitives", GL_PRIMITIVES_GENERATED);
+    glEnable(GL_RASTERIZER_DISCARD);
+    query.begin();
+    guarded(Call::draw, [&] { method_->draw(picture_view(camera_)); });
+    query.end();
+    glDisable(GL_RASTERIZER_DISCARD);
+    return query.wait();
+}
+
+std::vector<float> Stage::read_depth() {
+    const std::size_t width = std::size_t(viewport_.width);
+    const std::size_t height = std::size_t(viewport_.height);
+    std::vector<float> upward(width * height);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, viewport_.width, viewport_.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                 upward.data());
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    std::vector<float> rows(upward.size());
+    for (std::size_t row = 0; row < height; ++row) {
+        std::copy_n(&upward[(height - 1 - row) * width], width, &rows[row * width]);
+    }
+    return rows;
+}
+
+std::vector<std::uint8_t> Stage::read_color() {
+    const std::size_t stride = 3 * std::size_t(viewport_.width);
+    const std::size_t height = std::size_t(viewport_.height);
+    std::vector<std::uint8_t> upward(stride * height);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, viewport_.width, viewport_.height, GL_RGB, GL_UNSIGNED_BYTE, upward.data());
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    std::vector<std::uint8_t> rows(upward.size());
+    for (std::size_t row = 0; row < height; ++row) {
+        std::copy_n(&upward[(height - 1 - row) * stride], stride, &rows[row * stride]);
+    }
+    return rows;
+}
+
+std::string Stage::depth_hash() {
+    std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a over 32-bit words
+    for (const float depth : read_depth()) {
+        hash = (hash ^ std::bit_cast<std::uint32_t>(depth)) * 1099511628211ULL;
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+}  // namespace lodbench::run
