@@ -1,0 +1,49 @@
+# Shared by the scripts beside it: sourced, never run.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+
+say() { printf '== %s\n' "$*"; }
+fail() {
+    printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+    exit 1
+}
+
+# The names in scripts/packages, one a line.
+wanted_packages() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' -e 's/[[:space:]]*$//' "$root/scripts/packages"; }
+
+missing_packages() {
+    local installed
+    installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' |
+        sed -n 's/^installed //p' | sort -u)
+    comm -23 <(wanted_packages | sort -u) <(printf '%s\n' "$installed")
+}
+
+# Installs what scripts/packages names and the system lacks, and nothing else.
+install_packages() {
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+        say "not a Debian system: the equivalents of scripts/packages must be installed already"
+        return
+    fi
+    local missing become=()
+    mapfile -t missing < <(missing_packages)
+    ((${#missing[@]})) || return 0
+    if ((EUID != 0)); then
+        command -v sudo >/dev/null ||
+            fail "${#missing[@]} packages are missing and there is no sudo; as root, run: apt-get install ${missing[*]}"
+        become=(sudo)
+        [[ -t 0 ]] || become+=(--non-interactive)
+        "${become[@]}" true ||
+            fail "${#missing[@]} packages are missing and sudo refused; as root, run: apt-get install ${missing[*]}"
+    fi
+    local apt=("${become[@]}" env DEBIAN_FRONTEND=noninteractive apt-get --quiet)
+    local install=("${apt[@]}" install --yes --no-install-recommends "${missing[@]}")
+    say "installing ${#missing[@]} packages: ${missing[*]}"
+    # The package index is fetched only where it does not know the packages, or knows files that are gone.
+    "${install[@]}" --simulate >/dev/null 2>&1 || "${apt[@]}" update
+    "${install[@]}" || { "${apt[@]}" update && "${install[@]}"; } ||
+        fail "apt-get could not install: ${missing[*]}"
+}
+
+# One job for each processor that this process may use.
+job_count() { nproc; }
