@@ -5,6 +5,7 @@
 # Used in this tree and, after find_package(lodbench), outside it.
 
 set(LODBENCH_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/EmbedShaders.cmake)
+set(LODBENCH_VERSION_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/plugin.map)
 
 function(lodbench_embed_shaders target function base)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders.cpp)
@@ -33,7 +34,7 @@ function(lodbench_add_method name)
   if(NOT LODBENCH_SANITIZE)
     target_link_options(${name} PRIVATE LINKER:--no-undefined)
   endif()
-  target_link_options(${name} PRIVATE LINKER:--exclude-libs,ALL)
+  target_link_options(${name} PRIVATE LINKER:--version-script=${LODBENCH_VERSION_SCRIPT})
   set(shaders ${arg_SHADERS})
   list(TRANSFORM shaders PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   lodbench_embed_shaders(${name} lodbench::embedded_shaders ${CMAKE_CURRENT_SOURCE_DIR} ${shaders})

@@ -1,0 +1,33 @@
+#include "report/png.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <string>
+
+#include "api/error.h"
+#include "report/results.h"
+
+namespace lodbench::report {
+
+void write_png(const std::filesystem::path& path, int width, int height,
+               std::span<const std::uint8_t> rgb) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = png_uint_32(width);
+    image.height = png_uint_32(height);
+    image.format = PNG_FORMAT_RGB;
+    if (rgb.size() != PNG_IMAGE_SIZE(image)) {
+        throw ContractError(fmt::format("write_png: expected {} bytes for {}x{}, found {}",
+                                        PNG_IMAGE_SIZE(image), width, height, rgb.size()));
+    }
+    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image);
+    std::string file(bytes, '\0');
+    if (png_image_write_to_memory(&image, file.data(), &bytes, 0, rgb.data(), 0, nullptr) == 0) {
+        throw EnvironmentError(fmt::format("{}: libpng: {}", path.string(), image.message));
+    }
+    file.resize(bytes);
+    write_whole(path, file);
+}
+
+}  // namespace lodbench::report
