@@ -1,0 +1,85 @@
+#include "terrain/height_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "api/error.h"
+
+namespace lodbench::terrain {
+namespace {
+
+/// FNV-1a, 64 bits (Fowler, Noll and Vo), over little-endian words of 32 bits.
+class Fnv1a {
+public:
+    void add(std::uint32_t word) {
+        for (int shift = 0; shift < 32; shift += 8) {
+            state_ = (state_ ^ ((word >> shift) & 0xFFU)) * 0x100000001b3ULL;
+        }
+    }
+    [[nodiscard]] std::string hex() const { return fmt::format("{:016x}", state_); }
+
+private:
+    std::uint64_t state_ = 0xcbf29ce484222325ULL;
+};
+
+std::string checksum_of(const TerrainInfo& info, std::span<const float> heights) {
+    Fnv1a hash;
+    hash.add(std::uint32_t(info.rows));
+    hash.add(std::uint32_t(info.columns));
+    for (const float height : heights) hash.add(std::bit_cast<std::uint32_t>(height));
+    return hash.hex();
+}
+
+bool positive(double value) {
+    return std::isfinite(value) && value > 0;
+}
+
+}  // namespace
+
+HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
+    : heights_(std::move(heights)) {
+    info_ = std::move(info);
+    if (info_.rows < 2 || info_.columns < 2) {
+        throw InputError(
+            fmt::format("terrain '{}': {} rows x {} columns make no surface; at least 2 x 2 samples "
+                        "are needed",
+                        info_.name, info_.rows, info_.columns));
+    }
+    if (!positive(info_.spacing.x) || !positive(info_.spacing.y)) {
+        throw InputError(fmt::format("terrain '{}': spacing of {} x {} m; both must be positive and finite",
+                                     info_.name, info_.spacing.x, info_.spacing.y));
+    }
+    if (!std::isfinite(info_.origin.x) || !std::isfinite(info_.origin.y)) {
+        throw InputError(fmt::format("terrain '{}': origin ({}, {}); both must be finite", info_.name,
+                                     info_.origin.x, info_.origin.y));
+    }
+    if (heights_.size() != std::size_t(info_.rows) * std::size_t(info_.columns)) {
+        throw ContractError(fmt::format("HeightField: expected {} rows x {} columns, found {} heights",
+                                        info_.rows, info_.columns, heights_.size()));
+    }
+    const auto bad = std::find_if(heights_.begin(), heights_.end(),
+                                  [](float height) { return !std::isfinite(height); });
+    if (bad != heights_.end()) {
+        const auto index = bad - heights_.begin();
+        throw InputError(fmt::format(
+            "terrain '{}': the height at row {}, column {} is {}; every height must be finite",
+            info_.name, index / info_.columns, index % info_.columns, *bad));
+    }
+    const auto [lowest, highest] = std::minmax_element(heights_.begin(), heights_.end());
+    info_.min_height = *lowest;
+    info_.max_height = *highest;
+    info_.checksum = checksum_of(info_, heights_);
+}
+
+void HeightField::copy_samples(const SampleRect& rect, std::span<float> heights) const {
+    for (int row = 0; row < rect.rows; ++row) {
+        const auto source = heights_.begin() +
+                            std::ptrdiff_t(rect.row + row) * info_.columns + rect.column;
+        std::copy_n(source, rect.columns, heights.begin() + std::ptrdiff_t(row) * rect.columns);
+    }
+}
+
+}  // namespace lodbench::terrain
