@@ -4,6 +4,7 @@
 
 #include <GL/glcorearb.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -17,6 +18,7 @@
 namespace lodbench::gl {
 
 class Buffer;
+class Object;
 class Program;
 class VertexArray;
 
@@ -80,24 +82,47 @@ public:
     [[nodiscard]] std::uint64_t draw_calls() const { return draw_calls_; }
     [[nodiscard]] const ObjectCounts& objects() const { return objects_; }
 
-    /// Errors that the driver's debug callback has reported since the last call; empty when none.
-    /// Source: KHR_debug, GL_DEBUG_TYPE_ERROR, synchronous.
+    /// Errors and undefined behaviour that the driver's debug callback has reported since the last call,
+    /// one line each, with the labels of the objects that were in use; empty when none. Repetitions and
+    /// what goes beyond 50 different messages are counted, not kept. Source: KHR_debug, synchronous.
     [[nodiscard]] std::vector<std::string> take_errors();
 
     /// Between begin and end every draw call is fed back instead of rasterised and handed to `sink`,
-    /// in drawing order, one call of `sink` per draw call. For the harness; never timed.
+    /// in drawing order, one call of `sink` per draw call. Every draw call must be idempotent: it is issued
+    /// again when its triangles did not fit. The span is valid during the call of `sink` only. Throws
+    /// ContractError for a capture within a capture or a draw within someone's GL_PRIMITIVES_GENERATED
+    /// query, EnvironmentError when the driver has no memory for the triangles. For the harness; never timed.
     void begin_capture(CaptureSink sink);
-    void end_capture();
+    /// May be called after any exception; does nothing when no capture is open.
+    void end_capture() noexcept;
+    [[nodiscard]] bool capturing() const { return capture_ != nullptr; }
 
     // For gl/'s own objects.
     void count_allocation(std::int64_t bytes);
     void count_upload(std::uint64_t bytes) { uploaded_bytes_ += bytes; }
     ObjectCounts& object_counts() { return objects_; }
+    /// Names the objects that a scope's calls concern, for messages of the driver.
+    class Scope {
+    public:
+        explicit Scope(Device& device, const Object* object, const Object* second = nullptr)
+            : device_(device) {
+            device.active_ = {object, second};
+        }
+        ~Scope() { device_.active_ = {}; }
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+
+    private:
+        Device& device_;
+    };
 
 private:
-    void submit(const Program& program, const VertexArray& vertices, GLenum mode,
-                const std::function<void()>& draw);
+    template <typename Draw>  // a std::function would allocate in the timed path
+    void submit(const Program& program, const VertexArray& vertices, GLenum mode, const Draw& draw);
     void capture_draw(const std::function<void()>& draw);
+    void report(std::string_view message);
+    static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity,
+                                    GLsizei length, const GLchar* message, const void* user);
 
     DeviceInfo info_;
     std::uint64_t allocated_bytes_ = 0;
@@ -106,8 +131,14 @@ private:
     std::uint64_t draw_calls_ = 0;
     ObjectCounts objects_;
     std::vector<std::string> errors_;
+    std::uint64_t errors_not_kept_ = 0;
+    std::array<const Object*, 2> active_{};
+    std::size_t feedback_bytes_ = std::size_t{1} << 20;  ///< what the last capture needed
     struct Capture;
-    std::unique_ptr<Capture> capture_;
+    struct CloseCapture {
+        void operator()(Capture* capture) const noexcept;
+    };
+    std::unique_ptr<Capture, CloseCapture> capture_;
 };
 
 }  // namespace lodbench::gl

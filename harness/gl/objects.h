@@ -20,20 +20,26 @@ class Device;
 class Object {
 public:
     [[nodiscard]] GLuint name() const { return name_; }
+    [[nodiscard]] const std::string& label() const { return label_; }
     explicit operator bool() const { return name_ != 0; }
 
 protected:
     Object() = default;
-    Object(Device& device, GLuint name) : device_(&device), name_(name) {}
+    /// `identifier` as for glObjectLabel: GL_BUFFER, GL_TEXTURE, ...
+    Object(Device& device, GLenum identifier, GLuint name, std::string_view label);
     Object(Object&& other) noexcept
-        : device_(std::exchange(other.device_, nullptr)), name_(std::exchange(other.name_, 0)) {}
+        : device_(std::exchange(other.device_, nullptr)),
+          name_(std::exchange(other.name_, 0)),
+          label_(std::move(other.label_)) {}
     void swap(Object& other) noexcept {
         std::swap(device_, other.device_);
         std::swap(name_, other.name_);
+        std::swap(label_, other.label_);
     }
     ~Object() = default;
     Device* device_ = nullptr;
     GLuint name_ = 0;
+    std::string label_;
 };
 
 /// A buffer with immutable storage of a fixed size in bytes.
@@ -69,7 +75,9 @@ private:
 class Texture : public Object {
 public:
     Texture() = default;
-    /// `target` GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY (then `layers` > 0).
+    /// `target` GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY (then `layers` > 0). Filters start as nearest, edges as
+    /// clamped, so that integer formats are complete. Throws ContractError for a target, size or format that
+    /// is not known here, EnvironmentError for a size beyond the device's limits or its memory.
     Texture(Device& device, std::string_view label, GLenum target, GLenum internal_format,
             int width, int height, int levels = 1, int layers = 0);
     Texture(Texture&& other) noexcept;
@@ -80,6 +88,7 @@ public:
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] int levels() const { return levels_; }
     [[nodiscard]] GLenum internal_format() const { return internal_format_; }
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< all levels and layers
     /// Tightly packed rows (unpack alignment 1). Counted as uploaded.
     void write(int level, int x, int y, int width, int height, GLenum format, GLenum type,
                const void* data, int layer = 0);
@@ -110,6 +119,13 @@ public:
     void elements(const Buffer& buffer);
 };
 
+/// Bytes of one texel of an internal format, as counted (padding of the driver is not known); ContractError
+/// for a format that is not known here.
+[[nodiscard]] std::size_t texel_bytes(GLenum internal_format);
+
+/// Bytes of one texel as handed over by (format, type); ContractError for a pair that is not known here.
+[[nodiscard]] std::size_t transfer_bytes(GLenum format, GLenum type);
+
 /// One colour texture and one depth texture; either may be absent.
 class Framebuffer : public Object {
 public:
@@ -130,9 +146,9 @@ public:
     Query& operator=(Query&& other) noexcept;
     ~Query();
 
-    void begin();
-    void end();
-    void timestamp();                                      ///< target GL_TIMESTAMP only
+    void begin() const;
+    void end() const;
+    void timestamp() const;                                      ///< target GL_TIMESTAMP only
     [[nodiscard]] std::optional<std::uint64_t> poll() const;  ///< nothing while not available
     [[nodiscard]] std::uint64_t wait() const;
 

@@ -42,10 +42,14 @@ struct Expanded {
 };
 [[nodiscard]] Expanded expand_includes(std::string_view name, std::span<const ShaderSource> own);
 
+/// A compiler's log in one line, with the names of the files in place of their numbers; understands the
+/// forms of Mesa ("0:12(5): ..."), NVIDIA ("0(12) : ...") and AMD ("ERROR: 0:12: ...").
+[[nodiscard]] std::string name_files(std::string_view log, std::span<const std::string> files);
+
 class Program : public Object {
 public:
     Program() = default;
-    /// Compiles and links. Each of `defines` becomes "#define NAME VALUE" after the #version line.
+    /// Compiles and links; all but compute programs feed back gl_Position. Each of `defines` becomes "#define NAME VALUE" after the #version line.
     /// Throws ContractError with the compiler's words, file names instead of numbers.
     Program(Device& device, std::string_view label, std::span<const ShaderSource> own,
             std::initializer_list<Stage> stages,
@@ -68,9 +72,16 @@ public:
     void set(std::string_view name, const glm::mat3& value);
 
 private:
+    struct Linked {
+        GLuint name = 0;
+        std::string sources;
+    };
+    Program(Device& device, std::string_view label, Linked linked);
+    static Linked link(std::string_view label, std::span<const ShaderSource> own,
+                       std::initializer_list<Stage> stages,
+                       const std::map<std::string, std::string>& defines);
     [[nodiscard]] GLint location(std::string_view name);
     std::map<std::string, GLint, std::less<>> locations_;
-    std::string label_;
     std::string sources_;  ///< all stages' expanded text, to tell a removed uniform from a misspelt one
 };
 

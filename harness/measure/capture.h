@@ -34,16 +34,21 @@ struct CaptureView {
 [[nodiscard]] CaptureView capture_view(const Camera& frozen, const TerrainInfo& terrain);
 
 /// Runs `draw` between begin_capture and end_capture with the rasteriser off and collects what it drew.
-/// The uniform blocks must already describe `view`.
+/// The uniform blocks must already describe `view`. Throws ContractError for a vertex whose w is not 1;
+/// no capture is left open.
 [[nodiscard]] CapturedSurface capture(gl::Device& device, const CaptureView& view,
                                       const std::function<void()>& draw);
 
 /// Clips to the terrain's extent in double (Sutherland-Hodgman on x and y) and drops degenerate triangles
-/// (two equal vertices, or no area in 3-D). World coordinates, three vertices each.
+/// (two equal vertices, or no area in 3-D) and those with a vertex that is not finite (see nonfinite_count).
+/// World coordinates, three vertices each.
 [[nodiscard]] std::vector<glm::dvec3> clipped_triangles(const CapturedSurface& surface,
                                                         const TerrainInfo& terrain);
 
-/// Triangles with three different vertices and an area, before clipping.
+/// Triangles with three different, finite vertices and an area, before clipping.
 [[nodiscard]] std::uint64_t nondegenerate_count(const CapturedSurface& surface);
+
+/// Vertices with a coordinate that is NaN or infinite.
+[[nodiscard]] std::uint64_t nonfinite_count(const CapturedSurface& surface);
 
 }  // namespace lodbench::measure

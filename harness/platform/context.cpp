@@ -1,0 +1,297 @@
+#include "platform/context.h"
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/glcorearb.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "api/error.h"
+
+namespace lodbench::platform {
+
+namespace {
+
+std::string text_or_empty(const char* text) {
+    return text == nullptr ? std::string() : std::string(text);
+}
+
+bool names(std::string_view list, std::string_view extension) {
+    for (std::size_t at = list.find(extension); at != std::string_view::npos;
+         at = list.find(extension, at + 1)) {
+        const std::size_t end = at + extension.size();
+        if ((at == 0 || list[at - 1] == ' ') && (end == list.size() || list[end] == ' ')) return true;
+    }
+    return false;
+}
+
+std::string egl_error() {
+    const EGLint error = eglGetError();
+    switch (error) {
+        case EGL_SUCCESS: return "no reason given";
+        case EGL_NOT_INITIALIZED: return "EGL_NOT_INITIALIZED";
+        case EGL_BAD_ACCESS: return "EGL_BAD_ACCESS";
+        case EGL_BAD_ALLOC: return "EGL_BAD_ALLOC";
+        case EGL_BAD_ATTRIBUTE: return "EGL_BAD_ATTRIBUTE";
+        case EGL_BAD_CONFIG: return "EGL_BAD_CONFIG";
+        case EGL_BAD_DISPLAY: return "EGL_BAD_DISPLAY";
+        case EGL_BAD_MATCH: return "EGL_BAD_MATCH";
+        case EGL_BAD_PARAMETER: return "EGL_BAD_PARAMETER";
+        default: return fmt::format("EGL error 0x{:04X}", error);
+    }
+}
+
+template <typename Function>
+Function load(const char* name) {
+    return reinterpret_cast<Function>(eglGetProcAddress(name));
+}
+
+/// A way to a display: an EGL device, or Mesa's surfaceless platform.
+struct Candidate {
+    int number = 0;
+    EGLDeviceEXT device = EGL_NO_DEVICE_EXT;  ///< none: the surfaceless platform
+    std::string file;                         ///< driver's file, "software" or "surfaceless"
+    bool software = false;                    ///< as far as EGL says
+};
+
+std::vector<Candidate> find_candidates(std::string& why_no_devices) {
+    std::vector<Candidate> candidates;
+    const std::string client = text_or_empty(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));
+    const auto query_devices = load<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+    const auto query_string = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+    const bool enumerable = names(client, "EGL_EXT_device_base") || names(client, "EGL_EXT_device_enumeration");
+    if (enumerable && names(client, "EGL_EXT_platform_device") && query_devices != nullptr) {
+        EGLint count = 0;
+        if (query_devices(0, nullptr, &count) == EGL_FALSE) count = 0;
+        std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(std::max(count, 0)));
+        if (devices.empty() || query_devices(count, devices.data(), &count) == EGL_FALSE) {
+            why_no_devices = "EGL found no device";
+            count = 0;
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+            Candidate candidate{static_cast<int>(i), devices[i], "", false};
+            if (query_string != nullptr) {
+                const std::string extensions = text_or_empty(query_string(devices[i], EGL_EXTENSIONS));
+                candidate.software = names(extensions, "EGL_MESA_device_software");
+                if (names(extensions, "EGL_EXT_device_drm")) {
+                    candidate.file = text_or_empty(query_string(devices[i], EGL_DRM_DEVICE_FILE_EXT));
+                }
+            }
+            if (candidate.file.empty()) candidate.file = candidate.software ? "software" : "EGL device";
+            candidates.push_back(std::move(candidate));
+        }
+    } else {
+        why_no_devices = "EGL cannot enumerate devices (EGL_EXT_device_enumeration, EGL_EXT_platform_device)";
+    }
+    if (names(client, "EGL_MESA_platform_surfaceless")) {
+        candidates.push_back({static_cast<int>(candidates.size()), EGL_NO_DEVICE_EXT, "surfaceless", true});
+    }
+    return candidates;
+}
+
+bool is_software(std::string_view renderer) {
+    constexpr std::array<std::string_view, 5> kNames = {"llvmpipe", "softpipe", "swrast", "Software Rasterizer",
+                                                        "SwiftShader"};
+    return std::any_of(kNames.begin(), kNames.end(), [&](std::string_view name) {
+        return renderer.find(name) != std::string_view::npos;
+    });
+}
+
+/// A context that is current. Displays are never terminated: EGL hands the same display to everyone who asks
+/// for a device, and terminating it would take it from them too; the process's end does it.
+class Opened {
+public:
+    Opened() = default;
+    Opened(Opened&& other) noexcept
+        : renderer(std::move(other.renderer)),
+          display_(other.display_),
+          context_(std::exchange(other.context_, EGL_NO_CONTEXT)) {}
+    Opened& operator=(Opened&& other) noexcept {
+        std::swap(renderer, other.renderer);
+        std::swap(display_, other.display_);
+        std::swap(context_, other.context_);
+        return *this;
+    }
+    ~Opened() {
+        if (context_ == EGL_NO_CONTEXT) return;
+        if (eglGetCurrentContext() == context_) {
+            eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        }
+        eglDestroyContext(display_, context_);
+    }
+
+    /// Makes a context current, or says in `failure` what refused.
+    static std::optional<Opened> open(const Candidate& candidate, std::string& failure);
+
+    std::string renderer;
+
+private:
+    EGLDisplay display_ = EGL_NO_DISPLAY;
+    EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+std::optional<Opened> Opened::open(const Candidate& candidate, std::string& failure) {
+    const auto get_display = load<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+    if (get_display == nullptr) {
+        failure = "EGL_EXT_platform_base is missing";
+        return std::nullopt;
+    }
+    Opened opened;
+    const bool surfaceless = candidate.device == EGL_NO_DEVICE_EXT;
+    opened.display_ =
+        surfaceless ? get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
+                    : get_display(EGL_PLATFORM_DEVICE_EXT, candidate.device, nullptr);
+    if (opened.display_ == EGL_NO_DISPLAY || eglInitialize(opened.display_, nullptr, nullptr) == EGL_FALSE) {
+        failure = "no display: " + egl_error();
+        return std::nullopt;
+    }
+    const std::string extensions = text_or_empty(eglQueryString(opened.display_, EGL_EXTENSIONS));
+    if (!names(extensions, "EGL_KHR_surfaceless_context")) {
+        failure = "EGL_KHR_surfaceless_context is missing";
+        return std::nullopt;
+    }
+    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) {
+        failure = "no desktop OpenGL: " + egl_error();
+        return std::nullopt;
+    }
+    EGLConfig config = EGL_NO_CONFIG_KHR;
+    if (!names(extensions, "EGL_KHR_no_config_context")) {
+        constexpr std::array<EGLint, 5> kWanted = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE,
+                                                   EGL_PBUFFER_BIT, EGL_NONE};
+        EGLint count = 0;
+        if (eglChooseConfig(opened.display_, kWanted.data(), &config, 1, &count) == EGL_FALSE || count == 0) {
+            failure = "no configuration for OpenGL: " + egl_error();
+            return std::nullopt;
+        }
+    }
+    constexpr std::array<EGLint, 9> kContext = {EGL_CONTEXT_MAJOR_VERSION, 4,
+                                                EGL_CONTEXT_MINOR_VERSION, 5,
+                                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                                EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE, EGL_NONE};
+    opened.context_ = eglCreateContext(opened.display_, config, EGL_NO_CONTEXT, kContext.data());
+    if (opened.context_ == EGL_NO_CONTEXT) {
+        failure = "no OpenGL 4.5 core context: " + egl_error();
+        return std::nullopt;
+    }
+    if (eglMakeCurrent(opened.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, opened.context_) == EGL_FALSE) {
+        failure = "context cannot be made current: " + egl_error();
+        return std::nullopt;
+    }
+    opened.renderer = text_or_empty(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+    return opened;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+std::optional<int> as_number(const std::string& text) {
+    int number = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    if (error != std::errc() || stop != end) return std::nullopt;
+    return number;
+}
+
+/// What was current before, current again at the end.
+class KeepCurrent {
+public:
+    KeepCurrent() = default;
+    ~KeepCurrent() {
+        if (context_ != EGL_NO_CONTEXT) eglMakeCurrent(display_, draw_, read_, context_);
+    }
+    KeepCurrent(const KeepCurrent&) = delete;
+    KeepCurrent& operator=(const KeepCurrent&) = delete;
+
+private:
+    EGLDisplay display_ = eglGetCurrentDisplay();
+    EGLContext context_ = eglGetCurrentContext();
+    EGLSurface draw_ = eglGetCurrentSurface(EGL_DRAW);
+    EGLSurface read_ = eglGetCurrentSurface(EGL_READ);
+};
+
+}  // namespace
+
+std::vector<DeviceEntry> list_devices() {
+    const KeepCurrent keep;
+    std::string why;
+    std::vector<DeviceEntry> entries;
+    for (const Candidate& candidate : find_candidates(why)) {
+        std::string failure;
+        const std::optional<Opened> opened = Opened::open(candidate, failure);
+        if (opened) {
+            entries.push_back({candidate.number, fmt::format("{} ({})", opened->renderer, candidate.file),
+                               is_software(opened->renderer)});
+        } else {
+            entries.push_back({candidate.number, fmt::format("{} (cannot be used: {})", candidate.file, failure),
+                               candidate.software});
+        }
+    }
+    return entries;
+}
+
+struct Context::Impl {
+    Opened opened;
+    std::string description;
+};
+
+Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
+    std::string tried;
+    const auto note = [&](const std::string& text) { tried += (tried.empty() ? "" : "; ") + text; };
+    std::string why_no_devices;
+    const std::vector<Candidate> candidates = find_candidates(why_no_devices);
+    if (!why_no_devices.empty()) note(why_no_devices);
+
+    const std::optional<int> number = as_number(device);
+    // Two rounds: what renders in hardware, then whatever renders. A name may lie in the renderer, which is
+    // known only once the context stands.
+    for (const bool software : {false, true}) {
+        for (const Candidate& candidate : candidates) {
+            if (number && candidate.number != *number) continue;
+            if (!software && candidate.software) continue;
+            std::string failure;
+            std::optional<Opened> opened = Opened::open(candidate, failure);
+            const std::string label = fmt::format("device {} ({})", candidate.number, candidate.file);
+            if (!opened) {
+                if (software == candidate.software) note(label + ": " + failure);
+                continue;
+            }
+            if (!software && is_software(opened->renderer)) continue;
+            const std::string name = fmt::format("{} ({})", opened->renderer, candidate.file);
+            if (!number && lower(name).find(lower(device)) == std::string::npos) {
+                if (software == is_software(opened->renderer)) {
+                    note(fmt::format("{} is '{}', which does not contain '{}'", label, opened->renderer, device));
+                }
+                continue;
+            }
+            impl_->description = name;
+            impl_->opened = std::move(*opened);
+            return;
+        }
+    }
+    if (number && (*number < 0 || static_cast<std::size_t>(*number) >= candidates.size())) {
+        note(fmt::format("there is no device {}; numbers end at {}", *number,
+                         static_cast<int>(candidates.size()) - 1));
+    }
+    throw EnvironmentError(fmt::format(
+        "no OpenGL 4.5 core context{}: {}; install a driver (Debian: libegl1, libgl1-mesa-dri) or name another device",
+        device.empty() ? "" : fmt::format(" for device '{}'", device), tried.empty() ? "nothing to try" : tried));
+}
+
+Context::~Context() = default;
+
+const std::string& Context::description() const {
+    return impl_->description;
+}
+
+}  // namespace lodbench::platform
