@@ -1,0 +1,27 @@
+#pragma once
+// Work in a forked child: a plugin that crashes, exits or loops costs its own answer only.
+
+#include <functional>
+#include <string>
+
+namespace lodbench::conformance {
+
+enum class Ending {
+    answered,  ///< `text` is what the work returned
+    refused,   ///< the work threw InputError; `text` is its message
+    no_means,  ///< the work threw EnvironmentError; `text` is its message
+    threw,     ///< the work threw anything else; `text` is its message
+    died,      ///< a signal or an exit in the middle; `text` says which
+    timed_out  ///< killed at the limit; `text` says which
+};
+
+struct Answer {
+    Ending ending = Ending::died;
+    std::string text;
+};
+
+/// Runs `work` in a forked child for at most `seconds` and returns what it answered. Must be called while
+/// this process has one thread and no GL context. Throws EnvironmentError when no child can be made.
+[[nodiscard]] Answer run_isolated(double seconds, const std::function<std::string()>& work);
+
+}  // namespace lodbench::conformance

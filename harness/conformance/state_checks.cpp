@@ -1,0 +1,265 @@
+// What a method leaves behind: pipeline state, errors, objects.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "conformance/session.h"
+
+namespace lodbench::conformance {
+
+namespace {
+
+/// Names of each kind that are objects in the current context, however they were made: bare GL included.
+/// Drivers number names from 1 upward, so that a leak shows among the first.
+struct NamesAlive {
+    static constexpr GLuint kProbed = 1U << 16;
+    static constexpr std::array<const char*, 9> kKinds = {
+        "buffers", "textures", "vertex arrays", "programs", "shaders",
+        "framebuffers", "renderbuffers", "queries", "samplers"};
+    std::array<int, 9> counts{};
+
+    static NamesAlive count() {
+        NamesAlive alive;
+        const auto probe = [&](std::size_t kind, auto is_object) {
+            for (GLuint name = 1; name <= kProbed; ++name) alive.counts[kind] += is_object(name) == GL_TRUE;
+        };
+        probe(0, glIsBuffer);
+        probe(1, glIsTexture);
+        probe(2, glIsVertexArray);
+        probe(3, glIsProgram);
+        probe(4, glIsShader);
+        probe(5, glIsFramebuffer);
+        probe(6, glIsRenderbuffer);
+        probe(7, glIsQuery);
+        probe(8, glIsSampler);
+        return alive;
+    }
+};
+
+/// Takes stock before the method makes its first object, and compares after `release`.
+class Inventory {
+public:
+    explicit Inventory(run::Stage& stage)
+        : stage_(stage), counted_(stage.device().objects()), alive_(NamesAlive::count()) {}
+
+    /// `host_pictures`: 1 where the stage has made its framebuffer (two textures) since, else 0.
+    void require_restored(int host_pictures, const std::string& when) const {
+        gl::ObjectCounts expected = counted_;
+        expected.textures += 2 * host_pictures;
+        expected.framebuffers += host_pictures;
+        const gl::ObjectCounts& now = stage_.device().objects();
+        std::string left;
+        const auto compare = [&](const char* kind, int before, int after) {
+            if (before != after) left += fmt::format("{}{} {}", left.empty() ? "" : ", ", after - before, kind);
+        };
+        compare("buffers", expected.buffers, now.buffers);
+        compare("textures", expected.textures, now.textures);
+        compare("programs", expected.programs, now.programs);
+        compare("vertex arrays", expected.vertex_arrays, now.vertex_arrays);
+        compare("framebuffers", expected.framebuffers, now.framebuffers);
+        compare("queries", expected.queries, now.queries);
+        compare("fences", expected.fences, now.fences);
+        if (!left.empty()) throw PromiseBroken(fmt::format("{}: not given back to gl/: {}", when, left));
+        // A name in use is deleted only when it is no longer bound.
+        glUseProgram(0);
+        glBindVertexArray(0);
+        const NamesAlive alive = NamesAlive::count();
+        for (std::size_t kind = 0; kind < alive.counts.size(); ++kind) {
+            const int host = kind == 1 ? 2 * host_pictures : kind == 5 ? host_pictures : 0;
+            compare(NamesAlive::kKinds[kind], alive_.counts[kind] + host, alive.counts[kind]);
+        }
+        if (!left.empty()) {
+            throw PromiseBroken(fmt::format("{}: made by bare GL and not deleted: {}", when, left));
+        }
+    }
+
+private:
+    run::Stage& stage_;
+    gl::ObjectCounts counted_;
+    NamesAlive alive_;
+};
+
+run::StageSetup setup_of(const Subject& subject, TerrainPointer terrain) {
+    return {.terrain = std::move(terrain),
+            .plugin = subject.method.plugin,
+            .method = subject.method.id,
+            .settings = subject.settings,
+            .device = subject.device};
+}
+
+void require_line(const std::string& text, const std::string& what) {
+    if (text.empty()) throw PromiseBroken(what + " is empty");
+    for (const char c : text) {
+        if (static_cast<unsigned char>(c) < 0x20) {
+            throw PromiseBroken(what + " is not one line: it holds a control character");
+        }
+    }
+}
+
+bool is_identifier(const std::string& text, char joint) {
+    if (text.empty()) return false;
+    for (const char c : text) {
+        if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == joint)) return false;
+    }
+    return true;
+}
+
+void require_sane(const run::ParamInfo& param) {
+    const std::string what = fmt::format("parameter '{}'", param.name);
+    if (!is_identifier(param.name, '_')) throw PromiseBroken(what + ": the name is not [a-z0-9_]+");
+    require_line(param.help, what + ": the help");
+    if (param.type == ParamType::choice) {
+        const std::set<std::string> choices(param.choices.begin(), param.choices.end());
+        if (choices.empty() || choices.contains("") || choices.size() != param.choices.size()) {
+            throw PromiseBroken(what + ": the choices are none, empty or doubled");
+        }
+        if (!choices.contains(param.default_choice)) {
+            throw PromiseBroken(fmt::format("{}: the default '{}' is no choice", what, param.default_choice));
+        }
+        return;
+    }
+    const bool ordered = std::isfinite(param.minimum) && std::isfinite(param.maximum) &&
+                         param.minimum <= param.default_number && param.default_number <= param.maximum;
+    if (!ordered) {
+        throw PromiseBroken(fmt::format("{}: expected finite minimum <= default <= maximum, found {} <= {} <= {}",
+                                        what, param.minimum, param.default_number, param.maximum));
+    }
+    if (param.type != ParamType::real) {
+        for (const double number : {param.minimum, param.default_number, param.maximum}) {
+            if (number != std::floor(number)) {
+                throw PromiseBroken(fmt::format("{}: {} is not a whole number", what, number));
+            }
+        }
+    }
+}
+
+/// Flies every call of the interface, in an order in which the harness makes them.
+void fly_every_call(run::Stage& stage, const Subject& subject,
+                    const std::function<void(const char* call)>& after_each) {
+    Random random(subject.seed);
+    stage.prepare();
+    after_each("prepare");
+    stage.upload();
+    after_each("upload");
+    stage.resize(kViewport);
+    after_each("resize");
+    const std::vector<Camera> flight = random_flight(random, stage.terrain().info(), 6);
+    for (int frame = 0; frame < int(flight.size()); ++frame) {
+        stage.select(flight[std::size_t(frame)], clock_of(frame));
+        after_each("select");
+        stage.settle();
+        after_each("settle");
+        stage.draw_picture();
+        after_each("draw");
+        stage.pause_background();
+        after_each("pause_background");
+        static_cast<void>(stage.capture());
+        after_each("draw in a capture");
+        stage.resume_background();
+        after_each("resume_background");
+        stage.draw_picture(true);
+        after_each("draw of the wireframe");
+        static_cast<void>(stage.counters());
+        after_each("counters");
+    }
+    stage.release();
+    after_each("release");
+}
+
+}  // namespace
+
+void descriptor_is_sane(const Subject& subject) {
+    const run::MethodInfo& method = subject.method;
+    if (!is_identifier(method.id, '-')) {
+        throw PromiseBroken(fmt::format("the id '{}' is not [a-z0-9-]+", method.id));
+    }
+    require_line(method.title, "the title");
+    require_line(method.version, "the version");
+    if (!method.citation.empty()) require_line(method.citation, "the citation");
+    std::set<std::string> names;
+    for (const run::ParamInfo& param : method.params) {
+        require_sane(param);
+        if (!names.insert(param.name).second) {
+            throw PromiseBroken(fmt::format("parameter '{}' is declared twice", param.name));
+        }
+    }
+    if (!method.quality_knob.empty() && !names.contains(method.quality_knob)) {
+        throw PromiseBroken(fmt::format("the quality knob '{}' is no parameter", method.quality_knob));
+    }
+    for (const run::ParamInfo& param : method.params) {
+        if (param.name == method.claimed_bound && param.type != ParamType::real) {
+            throw PromiseBroken(fmt::format("the claimed bound '{}' is not a real parameter", param.name));
+        }
+    }
+    if (!method.claimed_bound.empty() && !names.contains(method.claimed_bound)) {
+        throw PromiseBroken(fmt::format("the claimed bound '{}' is no parameter", method.claimed_bound));
+    }
+}
+
+void pipeline_state_is_restored(const Subject& subject) {
+    run::VitalSigns signs;
+    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    stage.check_state(true);
+    fly_every_call(stage, subject, [](const char*) {});
+}
+
+void no_gl_errors(const Subject& subject) {
+    run::VitalSigns signs;
+    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    // The stage hears the driver's debug messages; the error flag is asked besides, as a plugin can turn
+    // the messages off.
+    fly_every_call(stage, subject, [](const char* call) {
+        const GLenum error = glGetError();
+        if (error != GL_NO_ERROR) {
+            throw PromiseBroken(fmt::format("{} left the GL error 0x{:04x}", call, error));
+        }
+    });
+}
+
+void objects_are_given_back(const Subject& subject) {
+    run::VitalSigns signs;
+    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    const Inventory inventory(stage);
+    fly_every_call(stage, subject, [](const char*) {});
+    inventory.require_restored(1, "after release");
+}
+
+void release_without_frames(const Subject& subject) {
+    run::VitalSigns signs;
+    {
+        const run::Stage created_only(setup_of(subject, ridged_terrain()), signs);
+    }
+    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    const Inventory inventory(stage);
+    stage.prepare();
+    stage.upload();
+    stage.release();
+    inventory.require_restored(0, "after prepare, upload, release");
+}
+
+void resize_and_back(const Subject& subject) {
+    Session session(subject, ridged_terrain());
+    Random random(subject.seed);
+    const Camera camera = random_camera(random, session.terrain());
+    session.select(camera, 0);
+    const auto picture = session.picture();
+    const auto surface = session.capture();
+    for (const Viewport& size : {Viewport{97, 211}, Viewport{1, 1}, Viewport{640, 64}}) {
+        const std::string where = fmt::format("{}x{}", size.width, size.height);
+        session.stage().resize(size);
+        Camera resized = camera;
+        resized.viewport = size;
+        session.select(resized, 0);
+        static_cast<void>(session.picture());
+        require_finite(session.capture(), "viewport " + where);
+        session.stage().resize(kViewport);
+        session.select(camera, 0);
+        require_same_depth(picture, session.picture(), kViewport, "back from " + where);
+        require_same_surface(surface, session.capture(), "back from " + where);
+    }
+}
+
+}  // namespace lodbench::conformance

@@ -1,0 +1,122 @@
+#include "conformance/suite.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+
+#include "api/error.h"
+#include "conformance/isolated.h"
+#include "run/stage.h"
+
+namespace lodbench::conformance {
+
+namespace {
+
+constexpr double kUsualLimit = 120;  // seconds; a check takes some on a software rasteriser
+constexpr double kLongLimit = 300;   // those that start a method a dozen times
+
+constexpr std::array kChecks = {
+    Check{"descriptor-is-sane", "id, texts, parameters and their ranges make sense", 30,
+          descriptor_is_sane},
+    Check{"draw-is-idempotent", "picture, capture, picture: identical depth bits", kUsualLimit,
+          draw_is_idempotent},
+    Check{"select-is-repeatable", "select twice with one camera: the same triangles to the bit",
+          kUsualLimit, select_is_repeatable},
+    Check{"selection-is-frozen", "draw gives the same selection through every view", kUsualLimit,
+          selection_is_frozen},
+    Check{"picture-shows-the-capture", "the picture is that of the captured triangles", kUsualLimit,
+          picture_shows_the_capture},
+    Check{"timing-equals-lockstep",
+          "depth after a random number of timing frames equals a fresh lockstep replay's", kUsualLimit,
+          timing_equals_lockstep},
+    Check{"lockstep-is-repeatable", "two lockstep replays draw the same triangles", kUsualLimit,
+          lockstep_is_repeatable},
+    Check{"pipeline-state-is-restored", "every call leaves the GL state as it was found", kUsualLimit,
+          pipeline_state_is_restored},
+    Check{"no-gl-errors", "no call raises a GL error", kUsualLimit, no_gl_errors},
+    Check{"objects-are-given-back", "release gives all GL objects back, bare ones included", kUsualLimit,
+          objects_are_given_back},
+    Check{"release-without-frames", "prepare, upload, release without a frame leaves nothing",
+          kUsualLimit, release_without_frames},
+    Check{"resize-and-back", "other viewports work, and the first gives the first picture again",
+          kUsualLimit, resize_and_back},
+    Check{"vertices-are-finite", "no NaN or infinite vertex, wherever the camera is and looks",
+          kUsualLimit, vertices_are_finite},
+    Check{"any-terrain-works", "2x2, odd sizes, plane, step, ridged: drawn and finite", kLongLimit,
+          any_terrain_works},
+    Check{"origin-does-not-matter", "10,000 km from the origin the surface is the same", kUsualLimit,
+          origin_does_not_matter},
+    Check{"parameters-at-their-limits", "every parameter works at its minimum, default and maximum",
+          kLongLimit, parameters_at_their_limits},
+    Check{"terrain-in-view-is-covered", "a method that claims a bound leaves no sample in view uncovered",
+          kUsualLimit, terrain_in_view_is_covered},
+};
+
+// The first letter of a child's answer.
+constexpr char kPassed = 'p', kFailed = 'f', kSkipped = 's';
+
+std::string judge(const Check& check, const Subject& subject) {
+    try {
+        check.run(subject);
+        return {kPassed};
+    } catch (const NotApplicable& reason) {
+        return kSkipped + std::string(reason.what());
+    } catch (const run::MethodSkipped& reason) {
+        return kSkipped + std::string(reason.what());
+    } catch (const PromiseBroken& broken) {
+        return kFailed + std::string(broken.what());
+    } catch (const run::MethodFailure& failure) {
+        return kFailed + std::string(failure.what());
+    }
+}
+
+}  // namespace
+
+std::span<const Check> all_checks() {
+    return kChecks;
+}
+
+const char* name_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::passed: return "passed";
+        case Verdict::failed: return "failed";
+        case Verdict::skipped: return "skipped";
+    }
+    return "";
+}
+
+const Check& find_check(const std::string& name) {
+    std::string names;
+    for (const Check& check : kChecks) {
+        if (name == check.name) return check;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", check.name);
+    }
+    throw InputError(fmt::format("no test is called '{}'; there are {}", name, names));
+}
+
+CheckReport run_check(const Check& check, const Subject& subject, double time_factor) {
+    const auto start = std::chrono::steady_clock::now();
+    const Answer answer =
+        run_isolated(check.time_limit_s * time_factor, [&] { return judge(check, subject); });
+    CheckReport report;
+    report.check = check.name;
+    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.reason = answer.text;
+    switch (answer.ending) {
+        case Ending::answered:
+            report.verdict = answer.text.front() == kPassed    ? Verdict::passed
+                             : answer.text.front() == kSkipped ? Verdict::skipped
+                                                               : Verdict::failed;
+            report.reason = answer.text.substr(1);
+            break;
+        case Ending::refused: throw InputError(answer.text);
+        case Ending::no_means: report.verdict = Verdict::skipped; break;
+        case Ending::threw:
+        case Ending::died:
+        case Ending::timed_out: report.verdict = Verdict::failed; break;
+    }
+    return report;
+}
+
+}  // namespace lodbench::conformance
