@@ -1,0 +1,88 @@
+"""What the README and --help say of the commands is the same, and true.
+
+usage: documents_test.py SOURCE_DIR LODBENCH_BINARY
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+SOURCE = pathlib.Path(sys.argv.pop(1))
+BINARY = sys.argv.pop(1)
+README = (SOURCE / "README.md").read_text()
+
+
+def run(*arguments):
+    done = subprocess.run([BINARY, *arguments], capture_output=True, text=True, timeout=60)
+    return done.returncode, done.stdout + done.stderr
+
+
+def subcommands(help_text):
+    _, _, listed = help_text.partition("Subcommands:")
+    return re.findall(r"^  ([a-z][a-z-]*)", listed, re.MULTILINE)
+
+
+def commands():
+    """Every command as a list of words: ['run'], ['terrain', 'info'], ..."""
+    for name in subcommands(run("--help")[1]):
+        inner = subcommands(run(name, "--help")[1])
+        yield from ([name, word] for word in inner) if inner else ([[name]])
+
+
+def readme_section(title):
+    return re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", README, re.MULTILINE | re.DOTALL).group(1)
+
+
+def readme_code_lines():
+    for block in re.findall(r"^```(?:sh|console)?\n(.*?)^```", README, re.MULTILINE | re.DOTALL):
+        yield from block.splitlines()
+
+
+class Documents(unittest.TestCase):
+    def test_readme_lists_the_commands_that_help_lists(self):
+        table = re.findall(r"^\| `lodbench ([a-z -]+?)(?= [^a-z]|`)", readme_section("Commands"),
+                           re.MULTILINE)
+        self.assertEqual(sorted(table), sorted(" ".join(command) for command in commands()))
+
+    def test_every_command_has_help(self):
+        for command in [[], ["terrain"], *commands()]:
+            status, text = run(*command, "--help")
+            self.assertEqual(status, 0, text)
+            self.assertIn("--help", text, command)
+
+    def test_what_is_no_command_is_refused_with_status_2(self):
+        for words in [["fly"], ["--fly"], ["terrain", "fly"], ["run", "--fly"], []]:
+            status, text = run(*words)
+            self.assertEqual(status, 2, (words, text))
+            self.assertLessEqual(len(text.splitlines()), 3, text)
+
+    def test_readme_uses_options_that_exist(self):
+        used = 0
+        for line in readme_code_lines():
+            call = re.match(r"^(?:\S*/)?lodbench ((?:terrain )?[a-z-]+)(.*)", line)
+            if not call:
+                continue
+            help_text = run(*call.group(1).split(), "--help")[1]
+            for option in re.findall(r"(?<=\s)(--?[a-z][a-z-]*)", call.group(2).split("#")[0]):
+                used += 1
+                self.assertRegex(help_text, rf"(?<![\w-]){option}(?![\w-])", line)
+        self.assertGreater(used, 5)
+
+    def test_readme_points_at_files_that_exist(self):
+        for path in re.findall(r"\]\(([^)#:]+)\)", README):
+            self.assertTrue((SOURCE / path).exists(), path)
+        for path in re.findall(r"^\| `([a-z.][\w./]*/)` \|", README, re.MULTILINE):
+            self.assertTrue((SOURCE / path).is_dir(), path)
+
+    def test_scripts_have_help(self):
+        for script in ["demo", "test", "check-clean"]:
+            done = subprocess.run([SOURCE / "scripts" / script, "--help"], capture_output=True,
+                                  text=True, timeout=60, cwd="/")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue(done.stdout.startswith(f"usage: scripts/{script}"), done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
