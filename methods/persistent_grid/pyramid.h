@@ -1,0 +1,142 @@
+#pragma once
+// The height pyramid (Livny et al. 2006, section 3.4), and the lowest ground near a place.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
+#include <utility>
+#include <vector>
+
+#include "api/terrain.h"
+
+namespace lodbench::persistent_grid {
+
+/// One level of the pyramid, row by row, row 0 the north edge.
+struct Level {
+    int columns = 0;
+    int rows = 0;
+    std::vector<float> heights;
+    [[nodiscard]] float at(int row, int column) const {
+        return heights[std::size_t(row) * std::size_t(columns) + std::size_t(column)];
+    }
+};
+
+/// Half the resolution: each texel is the mean of four, and the size is rounded up. Where a size is odd,
+/// the last row or column has no partner and stands in for it (edge replication).
+///
+/// Averaging moves the texels: texel k of level l stands at (k + 1/2) 2^l - 1/2 in units of samples, the
+/// middle of the 2^l samples that it covers, and not on sample k 2^l.
+inline Level half_resolution(const Level& fine) {
+    Level coarse{(fine.columns + 1) / 2, (fine.rows + 1) / 2, {}};
+    coarse.heights.reserve(std::size_t(coarse.columns) * std::size_t(coarse.rows));
+    for (int row = 0; row < coarse.rows; ++row) {
+        const int north = 2 * row, south = std::min(north + 1, fine.rows - 1);
+        for (int column = 0; column < coarse.columns; ++column) {
+            const int west = 2 * column, east = std::min(west + 1, fine.columns - 1);
+            const double sum = double(fine.at(north, west)) + fine.at(north, east) +
+                               fine.at(south, west) + fine.at(south, east);
+            coarse.heights.push_back(float(sum / 4));
+        }
+    }
+    return coarse;
+}
+
+/// All levels down to one texel.
+inline std::vector<Level> make_pyramid(Level finest) {
+    std::vector<Level> levels;
+    levels.push_back(std::move(finest));
+    while (levels.back().columns > 1 || levels.back().rows > 1) {
+        Level next = half_resolution(levels.back());
+        levels.push_back(std::move(next));
+    }
+    return levels;
+}
+
+/// Where each level from 1 up lies in the texture that holds them together: level 1 in the north-west
+/// corner, all others below each other at its east side. (Mipmaps of OpenGL round sizes down.)
+struct AtlasLayout {
+    std::vector<glm::ivec2> origins;  ///< one a level; of level 0, which has its own texture, (0, 0)
+    glm::ivec2 size{1};
+};
+inline AtlasLayout atlas_layout(const std::vector<Level>& levels) {
+    AtlasLayout layout;
+    layout.origins.assign(levels.size(), glm::ivec2(0));
+    int south = 0;
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        const glm::ivec2 level_size(levels[i].columns, levels[i].rows);
+        if (i > 1) {
+            layout.origins[i] = {levels[1].columns, south};
+            south += level_size.y;
+        }
+        layout.size = glm::max(layout.size, layout.origins[i] + level_size);
+    }
+    return layout;
+}
+
+/// Lowest heights of the surroundings, for the option base = "minimum-near" (absent from the paper).
+///
+/// The terrain is divided into tiles of 64 x 64 samples; a tile's node, at its centre, holds the lowest
+/// height of the tile and its eight neighbours, and between nodes the value is bilinear. So the plane
+/// moves continuously with the viewpoint, and never lies above the ground of the viewpoint's own tile.
+class LocalMinimum {
+public:
+    static constexpr int kTileSamples = 64;
+
+    LocalMinimum() = default;
+    explicit LocalMinimum(const Level& finest)
+        : columns_((finest.columns + kTileSamples - 1) / kTileSamples),
+          rows_((finest.rows + kTileSamples - 1) / kTileSamples) {
+        std::vector<float> lowest(std::size_t(columns_) * std::size_t(rows_), finest.at(0, 0));
+        for (int row = 0; row < rows_; ++row) {
+            for (int column = 0; column < columns_; ++column) {
+                lowest[index(row, column)] = lowest_of_tile(finest, row, column);
+            }
+        }
+        nodes_ = lowest;
+        for (int row = 0; row < rows_; ++row) {
+            for (int column = 0; column < columns_; ++column) {
+                float& node = nodes_[index(row, column)];
+                for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r) {
+                    for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns_ - 1); ++c) {
+                        node = std::min(node, lowest[index(r, c)]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// At a place in units of samples (x: column, y: row); outside the grid that of its edge.
+    [[nodiscard]] double at(const glm::dvec2& place) const {
+        const glm::dvec2 last(columns_ - 1, rows_ - 1);
+        const glm::dvec2 node = glm::clamp((place + 0.5) / double(kTileSamples) - 0.5, glm::dvec2(0), last);
+        const int column = int(node.x), row = int(node.y);
+        const int east = std::min(column + 1, columns_ - 1), south = std::min(row + 1, rows_ - 1);
+        const glm::dvec2 t = node - glm::dvec2(column, row);
+        return glm::mix(glm::mix(height(row, column), height(row, east), t.x),
+                        glm::mix(height(south, column), height(south, east), t.x), t.y);
+    }
+
+private:
+    [[nodiscard]] std::size_t index(int row, int column) const {
+        return std::size_t(row) * std::size_t(columns_) + std::size_t(column);
+    }
+    [[nodiscard]] double height(int row, int column) const { return nodes_[index(row, column)]; }
+    static float lowest_of_tile(const Level& finest, int tile_row, int tile_column) {
+        const int row = tile_row * kTileSamples, column = tile_column * kTileSamples;
+        float lowest = finest.at(row, column);
+        for (int r = row; r < std::min(row + kTileSamples, finest.rows); ++r) {
+            for (int c = column; c < std::min(column + kTileSamples, finest.columns); ++c) {
+                lowest = std::min(lowest, finest.at(r, c));
+            }
+        }
+        return lowest;
+    }
+
+    int columns_ = 0;
+    int rows_ = 0;
+    std::vector<float> nodes_;
+};
+
+}  // namespace lodbench::persistent_grid
