@@ -1,7 +1,234 @@
+// lodbench mesh: the triangles that a method draws in one frame of a scenario, as PLY.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "cli/commands.h"
+#include "conformance/isolated.h"
+#include "report/results.h"
+#include "run/locations.h"
+#include "run/mesh_export.h"
+#include "run/stage.h"
+#include "scenario/scenario.h"
 
 namespace lodbench::cli {
 
-void add_mesh(CLI::App&, int&) {}
+namespace {
+
+struct MeshOptions {
+    std::string method, scenario, out, device, size;
+    std::vector<std::string> settings, plugin_folders;
+    int frame = 0;
+    std::optional<int> frames;
+    bool before_clipping = false;
+    bool json = false;
+};
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+Viewport parse_size(const std::string& text) {
+    Viewport size;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%5dx%5d%c", &size.width, &size.height, &rest) != 2 || size.width < 1 ||
+        size.height < 1 || size.width > 16384 || size.height > 16384) {
+        throw InputError(fmt::format("--size {}: expected WxH with 1 to 16384 pixels each, such as 640x480",
+                                     text));
+    }
+    return size;
+}
+
+/// The scenario's own settings of the method, then what --set says, as `param=value` or
+/// `method.param=value`.
+Settings settings_of(const MeshOptions& options, const scenario::Scenario& scenario) {
+    Settings settings;
+    const auto put = [&](const std::string& name, const std::string& value) {
+        for (auto& setting : settings) {
+            if (setting.first == name) {
+                setting.second = value;
+                return;
+            }
+        }
+        settings.emplace_back(name, value);
+    };
+    std::vector<std::pair<std::string, std::string>> chosen;
+    for (const std::string& text : options.settings) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+            throw InputError(fmt::format("--set {}: expected PARAM=VALUE", text));
+        }
+        std::string name = text.substr(0, equals);
+        if (const std::size_t dot = name.find('.'); dot != std::string::npos) {
+            if (name.substr(0, dot) != options.method) {
+                throw InputError(fmt::format("--set {}: the mesh is of '{}', not of '{}'", text, options.method,
+                                             name.substr(0, dot)));
+            }
+            name.erase(0, dot + 1);
+        }
+        chosen.emplace_back(std::move(name), text.substr(equals + 1));
+    }
+    for (const scenario::MethodRequest& request : scenario.methods) {
+        if (request.id != options.method) continue;
+        for (const auto& [name, values] : request.settings) {
+            const bool overridden = std::any_of(chosen.begin(), chosen.end(),
+                                                [&](const auto& setting) { return setting.first == name; });
+            if (values.size() == 1) put(name, values.front());
+            if (values.size() > 1 && !overridden) {
+                throw InputError(fmt::format("{}: {} is swept over {} values; choose one with --set {}={}",
+                                             request.where, name, values.size(), name, values.front()));
+            }
+        }
+        break;
+    }
+    for (const auto& [name, value] : chosen) put(name, value);
+    return settings;
+}
+
+run::MethodInfo find_method(const MeshOptions& options) {
+    const std::vector<std::filesystem::path> extra(options.plugin_folders.begin(),
+                                                   options.plugin_folders.end());
+    std::string known;
+    std::string refusals;
+    for (const run::PluginListing& listing : run::list_plugins(run::plugin_folders(extra))) {
+        for (const run::MethodInfo& method : listing.methods) {
+            if (method.id == options.method) return method;
+            known += (known.empty() ? "" : ", ") + method.id;
+        }
+        if (!listing.refusal.empty()) refusals += "; refused: " + listing.refusal;
+    }
+    throw InputError(fmt::format("no method is called '{}'; there are: {}{}", options.method,
+                                 known.empty() ? "none" : known, refusals));
+}
+
+std::string text_of(const ParamValue& value) {
+    struct {
+        std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+        std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
+        std::string operator()(double number) const { return fmt::format("{}", number); }
+        std::string operator()(const std::string& text) const { return text; }
+    } writer;
+    return std::visit(writer, value);
+}
+
+/// Flies to the frame in lockstep, as a method may keep state from frame to frame, and writes the file.
+/// Returns what is to be printed.
+std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
+                        const run::MethodInfo& method, const Settings& settings) {
+    const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(scenario.terrain);
+    const auto path = scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
+    run::VitalSigns signs;
+    run::Stage stage({.terrain = terrain,
+                      .plugin = method.plugin,
+                      .method = method.id,
+                      .settings = settings,
+                      .device = options.device},
+                     signs);
+    stage.prepare();
+    stage.upload();
+    stage.resize(scenario.viewport);
+    Camera camera;
+    camera.vertical_fov = scenario.vertical_fov;
+    camera.viewport = scenario.viewport;
+    camera.near_plane = scenario.near_plane;
+    for (int frame = 0; frame <= options.frame; ++frame) {
+        path->place(frame, camera);
+        stage.select(camera, {.frame = frame, .seconds = frame / scenario.rate_hz});
+        stage.settle();
+    }
+    stage.pause_background();
+    const measure::CapturedSurface surface = stage.capture();
+    stage.resume_background();
+    if (const std::uint64_t count = run::not_finite_count(surface); count > 0) {
+        throw run::MethodFailure(fmt::format(
+            "{} of the {} vertices that '{}' draws in frame {} are NaN or infinite: nothing was written; "
+            "`lodbench validate {}` finds the camera",
+            count, surface.vertices.size(), method.id, options.frame, method.plugin.string()));
+    }
+    run::MeshContext context;
+    context.lodbench_version = LODBENCH_VERSION;
+    context.method = method.id;
+    context.method_version = method.version;
+    context.scenario = scenario.name;
+    for (const auto& [name, value] : stage.params().values()) {
+        context.params.emplace_back(name, text_of(value));
+    }
+    context.terrain = terrain->info();
+    context.frame = options.frame;
+    context.camera = camera;
+    context.clipped = !options.before_clipping;
+    const run::Mesh mesh = options.before_clipping
+                               ? run::weld(surface)
+                               : run::weld(measure::clipped_triangles(surface, terrain->info()));
+    report::write_whole(options.out, run::ply(mesh, context));
+    stage.release();
+    return options.json ? fmt::format("{{\"vertices\": {}, \"triangles\": {}}}", mesh.vertices.size(),
+                                      mesh.triangles.size())
+                        : fmt::format("{}: {} triangles, {} vertices, frame {} of {}", options.out,
+                                      mesh.triangles.size(), mesh.vertices.size(), options.frame, method.id);
+}
+
+/// Exit statuses: 2 for the user's mistakes, 3 when the method failed, 4 without the means.
+constexpr int kMethodFailed = 3;
+
+int run_mesh(const MeshOptions& options) {
+    const std::filesystem::path file =
+        options.scenario.empty() ? run::demo_scenario() : std::filesystem::path(options.scenario);
+    scenario::Scenario scenario = scenario::load_scenario(file);
+    scenario::Overrides overrides;
+    overrides.frames = options.frames;
+    if (!options.size.empty()) overrides.viewport = parse_size(options.size);
+    scenario::apply(overrides, scenario);
+    if (options.frame >= scenario.frames) {
+        throw InputError(fmt::format("--frame {}: the flight of {} has frames 0 to {}", options.frame,
+                                     scenario.name, scenario.frames - 1));
+    }
+    const Settings settings = settings_of(options, scenario);
+    const run::MethodInfo method = find_method(options);
+    static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
+    const conformance::Answer answer =
+        conformance::run_isolated(scenario.cell_time_limit_s,
+                                  [&] { return export_mesh(options, scenario, method, settings); });
+    using conformance::Ending;
+    switch (answer.ending) {
+        case Ending::answered: fmt::print("{}\n", answer.text); return 0;
+        case Ending::refused: throw InputError(answer.text);
+        case Ending::no_means: throw EnvironmentError(answer.text);
+        case Ending::threw: fmt::print(stderr, "lodbench: {}\n", answer.text); return kMethodFailed;
+        case Ending::died:
+        case Ending::timed_out: break;
+    }
+    fmt::print(stderr, "lodbench: the process that flew '{}' of plugin {} {}\n", method.id,
+               method.plugin.string(), answer.text);
+    return kMethodFailed;
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app, int& status) {
+    const auto options = std::make_shared<MeshOptions>();
+    CLI::App* command = app.add_subcommand(
+        "mesh", "Write the triangles that a method draws in one frame (binary PLY, world metres in double)");
+    command->add_option("METHOD", options->method, "id of the method, see `lodbench list`")->required();
+    command->add_option("--scenario", options->scenario, "scenario file; the demo's when not given");
+    command->add_option("--frame", options->frame, "index on the flight path, 0 when not given")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("-o,--out", options->out, "file to write, whole or not at all")->required();
+    command->add_option("--set", options->settings, "PARAM=VALUE of the method; may be repeated");
+    command->add_option("--frames", options->frames, "number of frames over which the path is spread")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--size", options->size, "viewport, WxH in pixels");
+    command->add_option("--device", options->device, "GL device, by number or part of its name");
+    command->add_option("--plugin-dir", options->plugin_folders, "folder to search for plugins first");
+    command->add_flag("--before-clipping", options->before_clipping,
+                      "as the method sent it: padding and degenerate triangles included");
+    command->add_flag("--json", options->json, "print the counts as JSON");
+    command->callback([options, &status] { status = run_mesh(*options); });
+}
 
 }  // namespace lodbench::cli
