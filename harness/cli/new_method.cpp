@@ -1,7 +1,216 @@
+// lodbench new-method NAME: a copy of the template with everything named NAME, ready to build and fly.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/error.h"
 #include "cli/commands.h"
+#include "run/locations.h"
 
 namespace lodbench::cli {
 
-void add_new_method(CLI::App&, int&) {}
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kLongestName = 64;
+constexpr std::array kTemplateFiles = {"CMakeLists.txt", "README.md", "template_method.cpp",
+                                       "template_method.vert"};
+
+/// The three spellings of one name.
+struct MethodName {
+    std::string id;          ///< "my-method"
+    std::string snake_case;  ///< "my_method": files, target, folder
+    std::string class_name;  ///< "MyMethod"
+};
+
+bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+
+bool is_valid(const std::string& id) {
+    return !id.empty() && id.size() <= kLongestName && is_lower(id.front()) &&
+           std::all_of(id.begin(), id.end(), [](char c) {
+               return is_lower(c) || (c >= '0' && c <= '9') || c == '-';
+           });
+}
+
+MethodName parse_name(const std::string& id) {
+    if (!is_valid(id)) {
+        throw InputError(fmt::format("new-method '{}': a name is a lower-case letter, then up to {} of a-z, "
+                                     "0-9 and '-'; for example 'my-method'",
+                                     id, kLongestName - 1));
+    }
+    MethodName name{id, id, ""};
+    std::replace(name.snake_case.begin(), name.snake_case.end(), '-', '_');
+    bool word_begins = true;
+    for (const char c : id) {
+        if (c != '-') name.class_name += word_begins && is_lower(c) ? char(c - 'a' + 'A') : c;
+        word_begins = c == '-';
+    }
+    // CMake's own target names, and the folders of methods/ that are no plugin.
+    constexpr std::array kReserved = {"common", "template", "template-method", "all", "clean", "install",
+                                      "test", "help", "lodbench"};
+    if (std::find(kReserved.begin(), kReserved.end(), id) != kReserved.end()) {
+        throw InputError(fmt::format("new-method '{}': the name is taken by lodbench or CMake; choose another", id));
+    }
+    return name;
+}
+
+fs::path template_folder() {
+    // Beside the scenarios, in a source tree as in an installed prefix.
+    const fs::path parent = run::scenario_folder().parent_path();
+    const std::array places = {parent / "methods" / "template", parent / "template"};
+    for (const fs::path& place : places) {
+        if (fs::exists(place / "template_method.cpp")) return place;
+    }
+    throw EnvironmentError(fmt::format("the template of methods is neither in {} nor in {}; install lodbench whole",
+                                       places[0].string(), places[1].string()));
+}
+
+std::string read_text(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    if (!stream || !(text << stream.rdbuf())) {
+        throw EnvironmentError(fmt::format("cannot read {}: {}", file.string(), std::strerror(errno)));
+    }
+    return text.str();
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+    stream << text;
+    stream.flush();
+    if (!stream) throw EnvironmentError(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+}
+
+std::string rename_all(std::string text, const MethodName& name) {
+    const std::array<std::pair<std::string, std::string>, 4> renames = {
+        {{"template_method", name.snake_case},
+         {"TemplateMethod", name.class_name},
+         {"\"template\"", '"' + name.id + '"'},
+         {"# template\n", "# " + name.id + '\n'}}};
+    for (const auto& [from, to] : renames) {
+        for (std::size_t at = text.find(from); at != std::string::npos;
+             at = text.find(from, at + to.size())) {
+            text.replace(at, from.size(), to);
+        }
+    }
+    return text;
+}
+
+/// Copies into a fresh folder beside `folder` and moves that into place: whole or not at all.
+void copy_template(const fs::path& folder, const MethodName& name) {
+    const fs::path source = template_folder();
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(folder, error))) {
+        throw InputError(fmt::format("{} exists already and is left as it is; choose another name or --dir",
+                                     folder.string()));
+    }
+    const fs::path unfinished = folder.string() + ".unfinished";
+    fs::create_directories(folder.parent_path(), error);
+    if (!fs::create_directory(unfinished, error)) {
+        throw EnvironmentError(fmt::format("cannot create {}: {}", unfinished.string(),
+                                           error ? error.message() : "it exists; remove it"));
+    }
+    try {
+        for (const char* file : kTemplateFiles) {
+            write_text(unfinished / rename_all(file, name), rename_all(read_text(source / file), name));
+        }
+        fs::rename(unfinished, folder, error);
+        if (error) {
+            throw EnvironmentError(
+                fmt::format("cannot create {}: {}", folder.string(), error.message()));
+        }
+    } catch (...) {
+        fs::remove_all(unfinished, error);
+        throw;
+    }
+}
+
+void add_to_tree(const fs::path& list, const MethodName& name) {
+    std::string text = read_text(list);
+    if (!text.empty() && text.back() != '\n') text += '\n';
+    text += fmt::format("add_subdirectory({})\n", name.snake_case);
+    const fs::path unfinished = list.string() + ".unfinished";
+    write_text(unfinished, text);
+    std::error_code error;
+    fs::rename(unfinished, list, error);
+    if (error) throw EnvironmentError(fmt::format("cannot write {}: {}", list.string(), error.message()));
+}
+
+/// For a shell: as it is where nothing in it is special, else in single quotes.
+std::string quoted(const fs::path& path) {
+    const std::string text = path.string();
+    const auto plain = [](char c) {
+        return is_lower(c) || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               std::strchr("/._-+,:=@%", c) != nullptr;
+    };
+    if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+    std::string result = "'";
+    for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+void print_steps(const fs::path& folder, const std::vector<std::string>& steps) {
+    fmt::print("{} is a method that flies. Next:\n", folder.string());
+    for (const std::string& step : steps) fmt::print("  {}\n", step);
+}
+
+void new_method(const std::string& id, const std::string& directory) {
+    const MethodName name = parse_name(id);
+    const fs::path list = fs::path("methods") / "CMakeLists.txt";
+    if (directory.empty() && fs::exists(list)) {
+        const fs::path folder = fs::path("methods") / name.snake_case;
+        copy_template(folder, name);
+        add_to_tree(list, name);
+        print_steps(folder, {"cmake -S . -B build/release -DCMAKE_BUILD_TYPE=Release",
+                             fmt::format("cmake --build build/release --target lodbench {}", name.snake_case),
+                             fmt::format("build/release/bin/lodbench run --plugin-dir build/release/plugins "
+                                         "--method {}",
+                                         id)});
+        return;
+    }
+    const fs::path folder = fs::path(directory) / id;
+    copy_template(folder, name);
+    const fs::path program = run::executable_path();
+    fs::path prefix = program.parent_path().parent_path();
+    std::vector<std::string> steps;
+    if (fs::exists(prefix / "CMakeCache.txt")) {
+        // Not an installed lodbench but the one in its build tree: find_package needs an installed one.
+        const fs::path build = prefix;
+        prefix = build / "installed";
+        steps.push_back(fmt::format("cmake --install {} --prefix {}", quoted(build), quoted(prefix)));
+    }
+    const fs::path build = folder / "build";
+    steps.push_back(fmt::format("cmake -S {} -B {} -DCMAKE_PREFIX_PATH={}", quoted(folder), quoted(build),
+                                quoted(prefix)));
+    steps.push_back(fmt::format("cmake --build {}", quoted(build)));
+    steps.push_back(fmt::format("{} run --plugin-dir {} --method {}", quoted(program), quoted(build), id));
+    print_steps(folder, steps);
+}
+
+}  // namespace
+
+void add_new_method(CLI::App& app, int&) {
+    CLI::App* command = app.add_subcommand(
+        "new-method", "Write a new method, ready to build and fly: methods/NAME in a checkout of lodbench "
+                      "(and its line in methods/CMakeLists.txt), elsewhere a project of its own");
+    const auto name = std::make_shared<std::string>();
+    const auto directory = std::make_shared<std::string>();
+    command->add_option("name", *name, "lower-case letter, then a-z, 0-9 and '-'")->required();
+    command->add_option("--dir", *directory, "write a project of its own into this folder");
+    command->callback([name, directory] { new_method(*name, *directory); });
+}
 
 }  // namespace lodbench::cli
