@@ -1,0 +1,50 @@
+#include "scenario/printable.h"
+
+#include <fmt/format.h>
+
+namespace lodbench::scenario {
+namespace {
+
+constexpr std::size_t kMaxBytes = 80;
+
+/// Bytes of the well-formed UTF-8 sequence at the start of `text`, 0 where there is none (Unicode
+/// standard, table 3-7).
+std::size_t sequence_length(std::string_view text) {
+    const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char lead = byte(0);
+    if (lead < 0x80) return 1;
+    const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+    if (lead < 0xC2 || lead > 0xF4 || text.size() < length) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if (byte(i) < 0x80 || byte(i) > 0xBF) return 0;
+    }
+    const unsigned char second = byte(1);
+    const bool overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
+    const bool outside = (lead == 0xED && second > 0x9F) || (lead == 0xF4 && second > 0x8F);
+    return overlong || outside ? 0 : length;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    std::string result = "\"";
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = sequence_length(text.substr(i));
+        if (i + length > kMaxBytes || i >= kMaxBytes) {
+            return result + "...\"";
+        }
+        const char c = text[i];
+        if (c == '"' || c == '\\') {
+            result += '\\';
+            result += c;
+        } else if (length == 0 || static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+        } else {
+            result += text.substr(i, length);
+        }
+        i += length == 0 ? 1 : length;
+    }
+    return result + "\"";
+}
+
+}  // namespace lodbench::scenario

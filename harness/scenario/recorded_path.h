@@ -1,0 +1,26 @@
+#pragma once
+// Flights recorded elsewhere: one row of CSV a frame.
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string_view>
+#include <vector>
+
+namespace lodbench::scenario {
+
+/// World metres; heading, pitch, roll in degrees.
+struct RecordedPlace {
+    glm::dvec3 position{0.0};
+    glm::dvec3 angles{0.0};
+};
+
+/// Parses "frame,x,y,z,heading,pitch,roll": that header line, then one row of seven finite numbers for
+/// each frame 0, 1, 2, ... Lines end with LF or CRLF; there are no quotes, comments or empty lines.
+/// Throws InputError as "FILE:LINE: what VALUE is wrong with; remedy".
+[[nodiscard]] std::vector<RecordedPlace> parse_recorded(std::string_view text,
+                                                        const std::filesystem::path& file);
+
+/// The same from a file of at most 256 MiB.
+[[nodiscard]] std::vector<RecordedPlace> load_recorded(const std::filesystem::path& file);
+
+}  // namespace lodbench::scenario

@@ -1,0 +1,286 @@
+#include "scenario/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <limits>
+
+#include "api/error.h"
+#include "scenario/child_rehearsal.h"
+#include "scenario/flight_section.h"
+#include "scenario/printable.h"
+#include "scenario/toml_section.h"
+#include "terrain/synthetic.h"
+#include "terrain/toml_file.h"
+
+namespace lodbench::scenario {
+namespace {
+
+constexpr std::int64_t kMaxSeed = std::numeric_limits<std::int64_t>::max();
+constexpr int kMaxFrames = 1'000'000;
+constexpr int kMaxPixels = 16384;  // a side; the least GL_MAX_VIEWPORT_DIMS of OpenGL 4.5
+constexpr int kMaxSide = 65537;    // samples of a synthetic terrain
+constexpr int kMaxRepetitions = 1000;
+constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::size_t kMaxSweptValues = 1000;
+
+bool is_name(std::string_view text, bool lower_case_only) {
+    return !text.empty() && text.size() <= kMaxNameBytes &&
+           std::all_of(text.begin(), text.end(), [lower_case_only](char c) {
+               const bool lower = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
+               return lower || (!lower_case_only && ((c >= 'A' && c <= 'Z') || c == '_'));
+           });
+}
+
+/// Puts the value of a key into `target` where the key is there.
+template <typename T, typename V>
+void set(T& target, const std::optional<V>& value) {
+    if (value) target = T(*value);
+}
+
+void read_name(Section& top, const std::filesystem::path& file, Scenario& scenario) {
+    const auto name = top.text("name");
+    scenario.name = name.value_or(file.stem().string());
+    if (is_name(scenario.name, false)) return;
+    const std::string remedy =
+        fmt::format("names are 1 to {} of A-Z a-z 0-9 _ -", kMaxNameBytes);
+    if (name) top.refuse("name", remedy);
+    throw InputError(fmt::format("{}:1: the file's name {} cannot name the scenario ({}); write "
+                                 "name = \"...\" as its first line",
+                                 file.string(), printable(scenario.name), remedy));
+}
+
+void read_synthetic(Section& section, terrain::TerrainSource& source) {
+    set(source.rows, section.integer("rows", 2, kMaxSide));
+    set(source.columns, section.integer("columns", 2, kMaxSide));
+    set(source.seed, section.integer("seed", 0, kMaxSeed));
+    std::vector<std::string> forms;
+    const terrain::SyntheticForm* form = nullptr;
+    for (const terrain::SyntheticForm& known : terrain::synthetic_forms()) {
+        forms.emplace_back(known.name);
+        if (source.synthetic == known.name) form = &known;
+    }
+    if (form == nullptr) {
+        section.refuse("synthetic", "not a synthetic terrain; " +
+                                        Section::known_names(source.synthetic, forms));
+    }
+    auto shape = section.section("shape");
+    if (!shape) return;
+    for (const terrain::ShapeParam& param : form->params) {
+        if (const auto value = shape->number(param.name)) source.shape.emplace(param.name, *value);
+    }
+    shape->refuse_unknown();
+}
+
+void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& scenario) {
+    auto section = top.section("terrain");
+    if (!section) {
+        top.require("terrain", "write a table [terrain] with file = \"...\" or synthetic = \"...\"");
+    }
+    terrain::TerrainSource& source = scenario.terrain;
+    source.where = section->where();
+    const auto file = section->text("file");
+    const auto synthetic = section->text("synthetic");
+    if (file.has_value() == synthetic.has_value()) {
+        if (file) section->refuse("synthetic", "there is a file too; write only one of the two");
+        section->require("file", "write file = \"...\" or synthetic = \"...\"");
+    }
+    if (file) {
+        source.file = existing_file(*section, "file", *file, folder);
+        source.where = section->where("file");
+        source.no_data = section->number("no_data", {-1e300, 1e300});
+    } else {
+        source.synthetic = *synthetic;
+        source.where = section->where("synthetic");
+        read_synthetic(*section, source);
+    }
+    constexpr Limits kSpacing{1e-6, 1e7};
+    const toml::node* spacing = section->node("spacing");
+    if (spacing != nullptr && spacing->is_number()) {
+        source.spacing_x = section->number("spacing", kSpacing);
+        source.spacing_y = source.spacing_x;
+    } else if (const auto both = section->numbers("spacing", 2, 2, kSpacing)) {
+        source.spacing_x = (*both)[0];
+        source.spacing_y = (*both)[1];
+    }
+    source.vertical_scale = section->number("vertical_scale", {-1e6, 1e6});
+    if (source.vertical_scale == 0) {
+        section->refuse("vertical_scale", "a scale of 0 makes every height the same; write another");
+    }
+    source.vertical_offset = section->number("vertical_offset");
+    if (const auto origin = section->numbers("origin", 2, 2)) {
+        source.origin_x = (*origin)[0];
+        source.origin_y = (*origin)[1];
+    }
+    section->refuse_unknown();
+}
+
+void read_camera(Section& top, Scenario& scenario) {
+    if (auto camera = top.section("camera")) {
+        if (const auto fov = camera->number("vertical_fov", {1, 170})) {
+            scenario.vertical_fov = glm::radians(*fov);
+        }
+        set(scenario.near_plane, camera->number("near", {1e-3, 1e6}));
+        camera->refuse_unknown();
+    }
+    if (auto viewport = top.section("viewport")) {
+        set(scenario.viewport.width, viewport->integer("width", 1, kMaxPixels));
+        set(scenario.viewport.height, viewport->integer("height", 1, kMaxPixels));
+        viewport->refuse_unknown();
+    }
+}
+
+void read_flight(Section& top, const std::filesystem::path& folder, Scenario& scenario) {
+    auto flight = top.section("flight");
+    if (!flight) top.require("flight", "write a table [flight] with kind = \"...\"");
+    set(scenario.frames, flight->integer("frames", 1, kMaxFrames));
+    set(scenario.rate_hz, flight->number("rate_hz", {1e-3, 1e6}));
+    set(scenario.warmup_frames, flight->integer("warmup_frames", 0, kMaxFrames));
+    scenario.path = read_path(*flight, folder);
+    flight->refuse_unknown();
+}
+
+void read_measure_and_run(Section& top, Scenario& scenario) {
+    if (auto measure = top.section("measure")) {
+        set(scenario.measure.every, measure->integer("every", 1, kMaxFrames));
+        if (auto shots = measure->integers("shots", 0, scenario.frames - 1)) {
+            std::sort(shots->begin(), shots->end());
+            shots->erase(std::unique(shots->begin(), shots->end()), shots->end());
+            scenario.measure.shots = std::move(*shots);
+        }
+        set(scenario.measure.budget_ms, measure->number("budget_ms", {0, 1e6}));
+        measure->refuse_unknown();
+    }
+    if (auto run = top.section("run")) {
+        set(scenario.repetitions, run->integer("repetitions", 1, kMaxRepetitions));
+        set(scenario.seed, run->integer("seed", 0, kMaxSeed));
+        set(scenario.cell_time_limit_s, run->number("cell_time_limit_s", {0.1, 1e7}));
+        set(scenario.frame_time_limit_s, run->number("frame_time_limit_s", {0.1, 1e7}));
+        if (const auto limit = run->integer("memory_limit_mib", 16, 1LL << 30U)) {
+            scenario.memory_limit_bytes = std::uint64_t(*limit) << 20U;
+        }
+        run->refuse_unknown();
+    }
+}
+
+/// A parameter's value as text; the plugin's own types decide later what it means.
+std::string setting_text(const Section& method, std::string_view key, const toml::node& node) {
+    if (const auto* text = node.as_string()) {
+        if (text->get().empty() || text->get().size() > kMaxNameBytes || describe(node) != '"' + text->get() + '"') {
+            method.refuse(key, fmt::format("values are 1 to {} bytes of plain text", kMaxNameBytes));
+        }
+        return text->get();
+    }
+    if (const auto* number = node.as_floating_point(); number != nullptr) {
+        return fmt::format("{}", method.number_of(key, node, {-1e300, 1e300}));
+    }
+    if (node.is_integer() || node.is_boolean()) return describe(node);
+    method.refuse(key, "write a number, true or false, text, or an array of these to sweep");
+}
+
+MethodRequest read_method(Section& section) {
+    MethodRequest request;
+    request.where = section.where();
+    const auto id = section.text("id");
+    if (!id) section.require("id", "write the id of a method as lodbench list shows it");
+    if (!is_name(*id, true)) {
+        section.refuse("id", "not the id of a method; ids are of a-z 0-9 - as lodbench list shows");
+    }
+    request.id = *id;
+    for (const auto& [key, node] : section.table()) {
+        if (key.str() == "id") continue;
+        std::vector<std::string> values;
+        if (const toml::array* array = node.as_array()) {
+            if (array->empty() || array->size() > kMaxSweptValues) {
+                section.refuse(key.str(), fmt::format("{} values; write 1 to {} to sweep",
+                                                      array->size(), kMaxSweptValues));
+            }
+            for (const toml::node& entry : *array) {
+                std::string value = setting_text(section, key.str(), entry);
+                if (std::find(values.begin(), values.end(), value) != values.end()) {
+                    section.refuse(key.str(), fmt::format("{} is there twice; remove one",
+                                                          printable(value)));
+                }
+                values.push_back(std::move(value));
+            }
+        } else {
+            values.push_back(setting_text(section, key.str(), node));
+        }
+        request.settings.emplace_back(std::string(key.str()), std::move(values));
+    }
+    return request;
+}
+
+void read_methods(Section& top, Scenario& scenario) {
+    for (Section& section : top.sections("method")) {
+        MethodRequest request = read_method(section);
+        for (const MethodRequest& other : scenario.methods) {
+            if (other.id == request.id && other.settings == request.settings) {
+                section.refuse("id", fmt::format("the same method with the same settings as at {}; "
+                                                 "remove one",
+                                                 other.where));
+            }
+        }
+        scenario.methods.push_back(std::move(request));
+    }
+}
+
+}  // namespace
+
+Scenario parse_scenario(std::string_view text, const std::filesystem::path& file) {
+    const toml::table table = terrain::parse_toml(text, file);
+    const std::filesystem::path folder = file.parent_path();
+    Section top(table, file, "");
+    Scenario scenario;
+    scenario.text = text;
+    // Unknown tables are told first: a mistyped [flight] must not read as a missing one.
+    for (const char* key : {"name", "terrain", "camera", "viewport", "flight", "measure", "run",
+                            "method"}) {
+        (void)top.node(key);
+    }
+    top.refuse_unknown();
+    read_name(top, file, scenario);
+    read_terrain(top, folder, scenario);
+    read_camera(top, scenario);
+    read_flight(top, folder, scenario);
+    read_measure_and_run(top, scenario);
+    read_methods(top, scenario);
+    return scenario;
+}
+
+Scenario load_scenario(const std::filesystem::path& file) {
+    const std::string text = terrain::read_toml_text(file);
+    const std::string death = rehearse_in_child([&] { (void)parse_scenario(text, file); });
+    if (!death.empty()) {
+        throw InputError(fmt::format("{}: the TOML parser {}; the file is damaged or too deeply "
+                                     "nested, simplify it",
+                                     file.string(), death));
+    }
+    return parse_scenario(text, file);
+}
+
+void apply(const Overrides& overrides, Scenario& scenario) {
+    const auto require = [](const char* option, long long value, long long maximum) {
+        if (value >= 1 && value <= maximum) return;
+        throw InputError(fmt::format("{} {}: out of range; give 1 to {}", option, value, maximum));
+    };
+    if (overrides.frames) {
+        require("--frames", *overrides.frames, kMaxFrames);
+        scenario.frames = *overrides.frames;
+        std::erase_if(scenario.measure.shots, [&](int shot) { return shot >= scenario.frames; });
+    }
+    if (overrides.viewport) {
+        require("--size: width", overrides.viewport->width, kMaxPixels);
+        require("--size: height", overrides.viewport->height, kMaxPixels);
+        scenario.viewport = *overrides.viewport;
+    }
+    if (overrides.seed) scenario.seed = *overrides.seed;
+    if (overrides.repetitions) {
+        require("--repeat", *overrides.repetitions, kMaxRepetitions);
+        scenario.repetitions = *overrides.repetitions;
+    }
+}
+
+}  // namespace lodbench::scenario
