@@ -17,7 +17,7 @@ constexpr double kUsualLimit = 120;  // seconds; a check takes some on a softwar
 constexpr double kLongLimit = 300;   // those that start a method a dozen times
 
 constexpr std::array kChecks = {
-    Check{"descriptor-is-sane", "id, texts, parameters and their ranges make sense", 30,
+    Check{"descriptor-is-sane", "texts are there, one line each; knob and bound make sense", 30,
           descriptor_is_sane},
     Check{"draw-is-idempotent", "picture, capture, picture: identical depth bits", kUsualLimit,
           draw_is_idempotent},

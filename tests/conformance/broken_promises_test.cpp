@@ -1,0 +1,105 @@
+// Each method of the plugin broken_promises breaks one promise: the check of that promise must fail, and a
+// method that keeps them all must pass every check.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace {
+
+const std::string kPlugin = LODBENCH_BUILD_DIR "/conformance-plugins/broken_promises.so";
+
+struct Outcome {
+    int status = -1;
+    std::string output;
+};
+
+Outcome validate(const std::string& arguments) {
+    const std::string command =
+        std::string(LODBENCH_BINARY) + " validate " + kPlugin + " " + arguments + " 2>&1";
+    Outcome outcome;
+    FILE* pipe = popen(command.c_str(), "r");
+    if (pipe == nullptr) return outcome;
+    std::array<char, 4096> part{};
+    while (const std::size_t count = fread(part.data(), 1, part.size(), pipe)) {
+        outcome.output.append(part.data(), count);
+    }
+    const int status = pclose(pipe);
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return outcome;
+}
+
+struct Fault {
+    const char* method;
+    const char* test;
+    const char* reason;  ///< part of what is said
+};
+
+class BrokenPromise : public testing::TestWithParam<Fault> {};
+
+TEST_P(BrokenPromise, is_noticed_by_its_check) {
+    const Fault fault = GetParam();
+    const Outcome outcome =
+        validate(std::string("--method ") + fault.method + " --seed 7 --test " + fault.test);
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(fault.reason), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("--seed 7"), std::string::npos) << outcome.output;
+}
+
+constexpr Fault kFaults[] = {
+    {"untitled", "descriptor-is-sane", "the title is empty"},
+    {"draw-drifts", "draw-is-idempotent", "picture after a capture: depth differs"},
+    {"select-counts", "select-is-repeatable", "selected twice: "},
+    {"culls-by-view", "selection-is-frozen", "triangles in the capture, "},
+    {"draws-elsewhere", "picture-shows-the-capture", "show another surface"},
+    {"needs-settle", "timing-equals-lockstep", "timing replay against lockstep: depth differs"},
+    {"depends-on-the-past", "lockstep-is-repeatable", "two lockstep replays: "},
+    {"leaves-state", "pipeline-state-is-restored", "left GL state changed"},
+    {"raises-errors", "no-gl-errors", "draw of plugin broken_promises.so raised"},
+    {"leaks-bare-buffer", "objects-are-given-back", "made by bare GL and not deleted: 1 buffers"},
+    {"keeps-objects", "release-without-frames", "not given back to gl/: 2 buffers"},
+    {"resize-sticks", "resize-and-back", "back from 97x211: depth differs"},
+    {"nan-straight-down", "vertices-are-finite", "camera straight down"},
+    {"needs-square", "any-terrain-works", "the terrain is not square"},
+    {"float-world", "origin-does-not-matter", "rounding allows"},
+    {"refuses-its-maximum", "parameters-at-their-limits", "tau = 100: "},
+    {"leaves-a-hole", "terrain-in-view-is-covered", "are covered by no triangle"},
+    {"aborts", "draw-is-idempotent", "died of signal 6"},
+    // The limit of 120 s, shortened.
+    {"loops", "draw-is-idempotent --time-factor 0.02", "no answer within"},
+};
+
+std::string name_of(const testing::TestParamInfo<Fault>& info) {
+    std::string name = info.param.method;
+    for (char& c : name) {
+        if (c == '-') c = '_';
+    }
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(each, BrokenPromise, testing::ValuesIn(kFaults), name_of);
+
+TEST(Conformance, passes_a_method_that_keeps_every_promise) {
+    const Outcome outcome = validate("--method faultless --seed 7");
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_EQ(outcome.output.find("failed "), std::string::npos) << outcome.output;
+    EXPECT_EQ(outcome.output.find("skipped "), std::string::npos) << outcome.output;
+}
+
+TEST(Conformance, names_the_tests_when_one_is_misspelt) {
+    const Outcome outcome = validate("--method faultless --test nonsense");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.output.find("'nonsense'"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("draw-is-idempotent"), std::string::npos) << outcome.output;
+}
+
+TEST(Conformance, refuses_a_method_that_the_plugin_does_not_hold) {
+    const Outcome outcome = validate("--method nobody");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.output.find("faultless"), std::string::npos) << outcome.output;
+}
+
+}  // namespace
