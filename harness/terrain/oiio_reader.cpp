@@ -1,0 +1,176 @@
+// The only file that knows OpenImageIO. The format is named by the extension, never guessed from the content,
+// so that no other of its readers gets a stranger's bytes.
+
+#include "terrain/raster_reader.h"
+
+#include <fmt/format.h>
+
+#include "api/error.h"
+
+#ifdef LODBENCH_WITH_OIIO
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+namespace lodbench::terrain {
+namespace {
+
+std::string one_line(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text.empty() ? "OpenImageIO says nothing more" : "OpenImageIO: " + text;
+}
+
+const char* format_of(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    if (extension == ".exr") return "openexr";
+    return extension == ".png" ? "png" : "tiff";
+}
+
+template <typename T>
+void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first, std::span<double> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        T sample;
+        std::memcpy(&sample, bytes.data() + (first + i) * sizeof(T), sizeof(T));
+        values[i] = sample;
+    }
+}
+
+class OiioReader final : public RasterReader {
+public:
+    explicit OiioReader(const std::filesystem::path& file) : file_(file) {
+        input_ = OIIO::ImageInput::create(format_of(file));
+        if (!input_) {
+            throw EnvironmentError(fmt::format("{}: this OpenImageIO has no reader for {}; {}",
+                                               file.string(), format_of(file),
+                                               one_line(OIIO::geterror())));
+        }
+        if (!input_->open(file.string(), spec_)) {
+            refuse(fmt::format("is no {} image that can be read; {}", format_of(file),
+                               one_line(input_->geterror())));
+        }
+        if (spec_.nchannels != 1) {
+            refuse(fmt::format("{} channels; a height map has one, convert it to grey without alpha",
+                               spec_.nchannels));
+        }
+        if (spec_.depth > 1) refuse("a volume; a height map is flat");
+        check_raster_size(file_, spec_.height, spec_.width);
+        description_.rows = spec_.height;
+        description_.columns = spec_.width;
+        choose_type();
+        refuse_stretched();
+        description_.kind = fmt::format("{}, {}, through OpenImageIO", input_->format_name(),
+                                        spec_.format.c_str());
+    }
+
+    void read_row(int row, std::span<double> values) override {
+        if (row >= strip_end_) read_strip(row);
+        const std::size_t first = std::size_t(row - strip_begin_) * std::size_t(spec_.width);
+        switch (type_.basetype) {
+            case OIIO::TypeDesc::UINT8: return copy_as_double<std::uint8_t>(strip_, first, values);
+            case OIIO::TypeDesc::INT8: return copy_as_double<std::int8_t>(strip_, first, values);
+            case OIIO::TypeDesc::UINT16: return copy_as_double<std::uint16_t>(strip_, first, values);
+            case OIIO::TypeDesc::INT16: return copy_as_double<std::int16_t>(strip_, first, values);
+            case OIIO::TypeDesc::UINT32: return copy_as_double<std::uint32_t>(strip_, first, values);
+            case OIIO::TypeDesc::INT32: return copy_as_double<std::int32_t>(strip_, first, values);
+            case OIIO::TypeDesc::FLOAT: return copy_as_double<float>(strip_, first, values);
+            default: return copy_as_double<double>(strip_, first, values);
+        }
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& what) const {
+        throw InputError(fmt::format("{}: {}", file_.string(), what));
+    }
+
+    void choose_type() {
+        // Halves widen to float without loss; everything else is read as it lies.
+        type_ = spec_.format == OIIO::TypeDesc::HALF ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT)
+                                                     : spec_.format;
+        static constexpr std::array kRead = {
+            OIIO::TypeDesc::UINT8,  OIIO::TypeDesc::INT8,  OIIO::TypeDesc::UINT16,
+            OIIO::TypeDesc::INT16,  OIIO::TypeDesc::UINT32, OIIO::TypeDesc::INT32,
+            OIIO::TypeDesc::FLOAT,  OIIO::TypeDesc::DOUBLE};
+        if (std::ranges::find(kRead, type_.basetype) == kRead.end()) {
+            refuse(fmt::format("samples of type {}; integers of up to 32 bits and floats are read",
+                               spec_.format.c_str()));
+        }
+        description_.float32 = type_.basetype == OIIO::TypeDesc::FLOAT;
+    }
+
+    /// OpenImageIO stretches samples of fewer bits than their type to the type's full range, and turns
+    /// "white is zero" over. Heights must come as they were written, so these are refused.
+    void refuse_stretched() const {
+        int bits = spec_.get_int_attribute("oiio:BitsPerSample", int(spec_.format.size() * 8));
+        if (std::string_view(input_->format_name()) == "png") bits = png_bit_depth();
+        if (bits != int(spec_.format.size() * 8)) {
+            refuse(fmt::format("{} bits a sample; convert it to 8 or 16", bits));
+        }
+        if (spec_.get_int_attribute("tiff:PhotometricInterpretation", 1) == 0) {
+            refuse("white is zero in this TIFF; convert it to black is zero");
+        }
+    }
+
+    /// Byte 24 of a PNG: its header chunk always comes first (PNG, second edition, 5.6 and 11.2.2).
+    [[nodiscard]] int png_bit_depth() const {
+        std::ifstream stream(file_, std::ios::binary);
+        stream.seekg(24);
+        return stream.get();
+    }
+
+    void read_strip(int row) {
+        const bool tiled = spec_.tile_width > 0;
+        const int height = tiled ? spec_.tile_height : 64;
+        strip_begin_ = row - row % height;
+        strip_end_ = std::min(strip_begin_ + height, spec_.height);
+        strip_.resize(std::size_t(strip_end_ - strip_begin_) * std::size_t(spec_.width) * type_.size());
+        const int top = spec_.y + strip_begin_;
+        const int bottom = spec_.y + strip_end_;
+        const bool read =
+            tiled ? input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, top, bottom, spec_.z,
+                                       spec_.z + 1, 0, 1, type_, strip_.data())
+                  : input_->read_scanlines(0, 0, top, bottom, spec_.z, 0, 1, type_, strip_.data());
+        if (!read) {
+            refuse(fmt::format("rows from {} cannot be read, the file may be truncated; {}",
+                               strip_begin_, one_line(input_->geterror())));
+        }
+    }
+
+    std::filesystem::path file_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+    OIIO::ImageSpec spec_;
+    OIIO::TypeDesc type_;
+    std::vector<std::byte> strip_;
+    int strip_begin_ = 0;
+    int strip_end_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<RasterReader> open_with_oiio(const std::filesystem::path& file) {
+    return std::make_unique<OiioReader>(file);
+}
+
+}  // namespace lodbench::terrain
+
+#else
+
+namespace lodbench::terrain {
+
+std::unique_ptr<RasterReader> open_with_oiio(const std::filesystem::path& file) {
+    throw InputError(fmt::format(
+        "{}: images are read through OpenImageIO, which this build leaves out; configure with "
+        "-DLODBENCH_WITH_OIIO=ON",
+        file.string()));
+}
+
+}  // namespace lodbench::terrain
+
+#endif

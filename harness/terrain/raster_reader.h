@@ -1,0 +1,76 @@
+#pragma once
+// What every importer of rasters gives: a description, then rows of the file's own numbers.
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "terrain/sidecar.h"
+
+namespace lodbench::terrain {
+
+/// What the file itself says; what it does not say is empty.
+struct RasterDescription {
+    std::string kind;  ///< "GeoTIFF, int16, through GDAL"
+    int rows = 0;
+    int columns = 0;
+    std::optional<glm::dvec2> spacing;  ///< metres
+    std::optional<glm::dvec2> origin;   ///< metres, of the south-west sample
+    double vertical_scale = 1;          ///< metres per unit of the file
+    double vertical_offset = 0;         ///< metres, added after scaling
+    std::optional<double> no_data;      ///< in units of the file; may be NaN
+    bool float32 = false;               ///< no_data is compared in float, as the samples are held
+    std::string spacing_hint;           ///< why the spacing is empty though the file has one; may be empty
+    std::string unit_hint;  ///< why the vertical scale must be given; empty where the file's is known
+};
+
+/// An open raster. Rows come in the order north to south; each is asked for once, in order.
+class RasterReader {
+public:
+    RasterReader() = default;
+    virtual ~RasterReader() = default;
+    RasterReader(const RasterReader&) = delete;
+    RasterReader& operator=(const RasterReader&) = delete;
+
+    [[nodiscard]] const RasterDescription& description() const { return description_; }
+
+    /// The numbers of one row as the file holds them, never normalised; double holds every type up to 32
+    /// bits exactly. `values` has `columns` elements. Throws InputError where the file cannot be read.
+    virtual void read_row(int row, std::span<double> values) = 0;
+
+protected:
+    RasterDescription description_;
+};
+
+/// Elevation models. Degrees become metres at the centre latitude phi, on the file's ellipsoid (WGS 84
+/// where it names none: a = 6378137 m, f = 1 / 298.257223563), with e^2 = f (2 - f), per radian:
+///     east   a cos(phi) / (1 - e^2 sin^2 phi)^(1/2)
+///     north  a (1 - e^2) / (1 - e^2 sin^2 phi)^(3/2)
+/// and the origin is longitude and latitude of the south-west sample times these. Projected coordinates
+/// are multiplied by the length of their unit. A sample stands at the centre of its pixel. Rotated
+/// geotransforms are refused, south-up rasters flipped. Throws InputError.
+[[nodiscard]] std::unique_ptr<RasterReader> open_with_gdal(const std::filesystem::path& file);
+
+/// Images of one channel. Throws InputError.
+[[nodiscard]] std::unique_ptr<RasterReader> open_with_oiio(const std::filesystem::path& file);
+
+/// Raw samples, row by row from the north, as the sidecar says. Throws InputError.
+[[nodiscard]] std::unique_ptr<RasterReader> open_raw(const std::filesystem::path& file,
+                                                     const Sidecar& sidecar);
+
+/// PGM, binary (P5), any maximal value: OpenImageIO stretches a maximum that is not 255 or 65535, so this
+/// one is read here. Throws InputError.
+[[nodiscard]] std::unique_ptr<RasterReader> open_pgm(const std::filesystem::path& file);
+
+/// Chooses the reader by the rule that `raster_route` states.
+[[nodiscard]] std::unique_ptr<RasterReader> open_raster(const std::filesystem::path& file,
+                                                        const Sidecar& sidecar);
+
+/// Throws InputError for a grid that is too small (under 2 x 2), or larger than 2^31 samples or than the
+/// memory that is free. Called before anything of that size is allocated.
+void check_raster_size(const std::filesystem::path& file, std::int64_t rows, std::int64_t columns);
+
+}  // namespace lodbench::terrain

@@ -1,0 +1,109 @@
+#include "terrain/raster_route.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "api/error.h"
+#include "terrain/raster_reader.h"
+
+namespace lodbench::terrain {
+namespace {
+
+/// Looks for georeference among the tags of a TIFF's first directory (TIFF 6.0 section 2; BigTIFF). What
+/// cannot be followed counts as no tag: the reader that gets the file says what is wrong with it.
+class TiffTags {
+public:
+    explicit TiffTags(const std::filesystem::path& file) : stream_(file, std::ios::binary) {}
+
+    bool georeferenced() {
+        std::array<char, 2> order{};
+        stream_.read(order.data(), 2);
+        if (!stream_ || order[0] != order[1] || (order[0] != 'I' && order[0] != 'M')) return false;
+        big_endian_ = order[0] == 'M';
+        const bool big_tiff = number(2) == 43;
+        if (big_tiff) stream_.seekg(8);
+        const int word = big_tiff ? 8 : 4;
+        const std::uint64_t directory = number(word);
+        if (directory > std::uint64_t(std::numeric_limits<std::int64_t>::max())) return false;
+        stream_.seekg(std::streamoff(directory));
+        const std::uint64_t count = std::min<std::uint64_t>(number(big_tiff ? 8 : 2), 65535);
+        for (std::uint64_t i = 0; i < count && stream_; ++i) {
+            const std::uint64_t tag = number(2);
+            if (stream_ && std::ranges::find(kTags, tag) != kTags.end()) return true;
+            stream_.seekg(big_tiff ? 18 : 10, std::ios::cur);
+        }
+        return false;
+    }
+
+private:
+    static constexpr std::array<std::uint64_t, 6> kTags = {33550, 33922, 34264,
+                                                           34735, 42112, 42113};
+    std::uint64_t number(int size) {
+        std::array<unsigned char, 8> bytes{};
+        stream_.read(reinterpret_cast<char*>(bytes.data()), size);
+        std::uint64_t value = 0;
+        for (int i = 0; i < size; ++i) {
+            value = value << 8 | bytes[std::size_t(big_endian_ ? i : size - 1 - i)];
+        }
+        return value;
+    }
+    std::ifstream stream_;
+    bool big_endian_ = false;
+};
+
+bool one_of(std::string_view extension, std::initializer_list<std::string_view> known) {
+    return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+}  // namespace
+
+RasterRoute raster_route(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) {
+        throw InputError(fmt::format("{}: no such file", file.string()));
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        throw InputError(fmt::format("{}: not a regular file", file.string()));
+    }
+    if (!std::ifstream(file, std::ios::binary).is_open()) {
+        throw InputError(fmt::format("{}: cannot be opened for reading", file.string()));
+    }
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    if (one_of(extension, {".hgt", ".asc", ".dem", ".dt0", ".dt1", ".dt2", ".img", ".bil", ".flt"})) {
+        return RasterRoute::gdal;
+    }
+    if (one_of(extension, {".tif", ".tiff"})) {
+        return TiffTags(file).georeferenced() ? RasterRoute::gdal : RasterRoute::oiio;
+    }
+    if (one_of(extension, {".png", ".exr"})) return RasterRoute::oiio;
+    if (extension == ".pgm") return RasterRoute::pgm;
+    if (one_of(extension, {".raw", ".r16", ".bin"})) return RasterRoute::raw;
+    throw InputError(fmt::format(
+        "{}: unknown extension '{}'; known: hgt, asc, dem, dt0, dt1, dt2, img, bil, flt, tif, tiff, "
+        "png, exr, pgm, raw, r16, bin",
+        file.string(), extension));
+}
+
+std::unique_ptr<RasterReader> open_raster(const std::filesystem::path& file,
+                                          const Sidecar& sidecar) {
+    switch (raster_route(file)) {
+        case RasterRoute::gdal: return open_with_gdal(file);
+        case RasterRoute::oiio: return open_with_oiio(file);
+        case RasterRoute::pgm: return open_pgm(file);
+        case RasterRoute::raw: break;
+    }
+    return open_raw(file, sidecar);
+}
+
+}  // namespace lodbench::terrain
