@@ -13,10 +13,11 @@ fail() {
 wanted_packages() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' -e 's/[[:space:]]*$//' "$root/scripts/packages"; }
 
 missing_packages() {
-    local installed
-    installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' |
-        sed -n 's/^installed //p' | sort -u)
-    comm -23 <(wanted_packages | sort -u) <(printf '%s\n' "$installed")
+    {
+        dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p'
+        echo --
+        wanted_packages
+    } | awk '$0 == "--" { wanted = 1; next } !wanted { installed[$0]; next } !($0 in installed)'
 }
 
 # Installs what scripts/packages names and the system lacks, and nothing else.
@@ -25,9 +26,10 @@ install_packages() {
         say "not a Debian system: the equivalents of scripts/packages must be installed already"
         return
     fi
-    local missing become=()
-    mapfile -t missing < <(missing_packages)
-    ((${#missing[@]})) || return 0
+    local names missing become=()
+    names=$(missing_packages)
+    [[ $names ]] || return 0
+    mapfile -t missing <<<"$names"
     if ((EUID != 0)); then
         command -v sudo >/dev/null ||
             fail "${#missing[@]} packages are missing and there is no sudo; as root, run: apt-get install ${missing[*]}"
@@ -40,9 +42,8 @@ install_packages() {
     local install=("${apt[@]}" install --yes --no-install-recommends "${missing[@]}")
     say "installing ${#missing[@]} packages: ${missing[*]}"
     # The package index is fetched only where it does not know the packages, or knows files that are gone.
-    "${install[@]}" --simulate >/dev/null 2>&1 || "${apt[@]}" update
-    "${install[@]}" || { "${apt[@]}" update && "${install[@]}"; } ||
-        fail "apt-get could not install: ${missing[*]}"
+    if "${install[@]}" --simulate >/dev/null 2>&1 && "${install[@]}"; then return; fi
+    "${apt[@]}" update && "${install[@]}" || fail "apt-get could not install: ${missing[*]}"
 }
 
 # One job for each processor that this process may use.
