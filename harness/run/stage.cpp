@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <optional>
 
 #include "gl/frame_blocks.h"
 #include "gl/state.h"
@@ -25,6 +27,7 @@ MethodInfo find_method(const PluginLibrary& library, const StageSetup& setup) {
 
 Stage::Stage(StageSetup setup, VitalSigns& signs)
     : setup_(std::move(setup)),
+      plugin_name_(setup_.plugin.filename().string()),
       signs_(signs),
       context_(std::make_unique<platform::Context>(setup_.device)),
       device_(std::make_unique<gl::Device>()),
@@ -57,24 +60,28 @@ Stage::~Stage() {
 }
 
 void Stage::guarded(Call call, const std::function<void()>& body) {
-    const std::string plugin = setup_.plugin.filename().string();
     std::optional<gl::PipelineState> before;
     if (check_state_) before = gl::PipelineState::capture();
+    const std::uint64_t allocated = device_->allocated_bytes();
+    const std::uint64_t uploaded = device_->uploaded_bytes();
     signs_.enter(call);
     try {
         body();
     } catch (const std::exception& error) {
         throw MethodFailure(
-            fmt::format("{} of plugin {} threw: {}", name_of(call), plugin, error.what()));
+            fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_, error.what()));
     } catch (...) {
         throw MethodFailure(
             fmt::format("{} of plugin {} threw something that is not a std::exception",
-                        name_of(call), plugin));
+                        name_of(call), plugin_name_));
     }
     signs_.enter(Call::none);
+    allocated_bytes_ += std::int64_t(device_->allocated_bytes() - allocated);
+    peak_bytes_ = std::max(peak_bytes_, allocated_bytes_);
+    uploaded_bytes_ += device_->uploaded_bytes() - uploaded;
     if (const auto errors = device_->take_errors(); !errors.empty()) {
         throw MethodFailure(fmt::format("{} of plugin {} raised {} GL error{}, the first: {}",
-                                        name_of(call), plugin, errors.size(),
+                                        name_of(call), plugin_name_, errors.size(),
                                         errors.size() == 1 ? "" : "s", errors.front()));
     }
     if (before) {
@@ -82,7 +89,7 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
         if (!differences.empty()) {
             before->restore();
             throw MethodFailure(fmt::format("{} of plugin {} left GL state changed: {}",
-                                            name_of(call), plugin, fmt::join(differences, "; ")));
+                                            name_of(call), plugin_name_, fmt::join(differences, "; ")));
         }
     }
 }

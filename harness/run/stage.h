@@ -81,6 +81,11 @@ public:
     /// Compare the pipeline state around every call of the method (not in the timing replay).
     void check_state(bool on) { check_state_ = on; }
 
+    /// Bytes that the method's own calls allocated on the GPU at their peak (seen after each call) and
+    /// uploaded so far; the harness's framebuffer and uniform blocks are not in them.
+    [[nodiscard]] std::uint64_t method_gpu_bytes() const { return std::uint64_t(peak_bytes_); }
+    [[nodiscard]] std::uint64_t method_uploaded_bytes() const { return uploaded_bytes_; }
+
     [[nodiscard]] gl::Device& device() { return *device_; }
     [[nodiscard]] const platform::Context& context() const { return *context_; }
     [[nodiscard]] const MethodInfo& method() const { return info_; }
@@ -94,6 +99,7 @@ private:
     void fill_blocks(const View& view, bool wireframe);
 
     StageSetup setup_;
+    std::string plugin_name_;
     VitalSigns& signs_;
     std::unique_ptr<platform::Context> context_;
     std::unique_ptr<gl::Device> device_;
@@ -106,6 +112,8 @@ private:
     gl::Framebuffer framebuffer_;
     Camera camera_;
     Viewport viewport_{0, 0};
+    std::int64_t allocated_bytes_ = 0, peak_bytes_ = 0;
+    std::uint64_t uploaded_bytes_ = 0;
     bool uploaded_ = false;
     bool check_state_ = false;
 };

@@ -1,0 +1,281 @@
+// One cell: load, prepare, then the same flight twice. The timing replay captures nothing; the lockstep
+// replay counts and measures and is never timed. A picture that both draw ties them together.
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "measure/timer_verdict.h"
+#include "report/png.h"
+#include "run/cell.h"
+#include "run/stage.h"
+#include "run/timing.h"
+#include "scenario/scenario.h"
+#include "terrain/toml_file.h"
+
+namespace lodbench::run {
+
+namespace {
+
+scenario::Scenario read_scenario(const CellSpec& spec) {
+    scenario::Scenario scenario =
+        scenario::parse_scenario(terrain::read_toml_text(spec.scenario_file),
+                                 spec.scenario_base / spec.scenario_file.filename());
+    scenario::apply(spec.overrides, scenario);
+    return scenario;
+}
+
+double process_cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// VmHWM, the highest resident size so far.
+std::optional<std::uint64_t> peak_rss_bytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
+    }
+    return std::nullopt;
+}
+
+class Flight {
+public:
+    Flight(const CellSpec& spec, VitalSigns& signs, CellResult& result)
+        : spec_(spec), signs_(signs), result_(result), scenario_(read_scenario(spec)) {}
+
+    void fly() {
+        open();
+        prepare();
+        choose_frames();
+        signs_.frames_total = scenario_.warmup_frames + 2 * scenario_.frames;
+        fly_for_time();
+        fly_in_lockstep();
+        stage_->release();
+        result_.peak_rss_bytes = peak_rss_bytes();
+    }
+
+    [[nodiscard]] std::string where() const {
+        const char* replay = replay_ == 1 ? "timing" : "lockstep";
+        return replay_ == 0 ? "" : fmt::format(", frame {} of the {} replay", frame_, replay);
+    }
+
+private:
+    void open();
+    void prepare();
+    void choose_frames();
+    void fly_for_time();
+    void fly_in_lockstep();
+    void measure_frame(FrameRecord& record);
+    void shoot(int frame);
+    void begin_frame(int frame) {
+        frame_ = frame;
+        signs_.frame = frame;
+        signs_.beats.fetch_add(1, std::memory_order_relaxed);
+    }
+    void begin_replay(int replay) {
+        replay_ = replay;
+        signs_.replay = replay;
+    }
+    [[nodiscard]] Camera camera_at(int frame) const {
+        Camera camera;
+        camera.vertical_fov = scenario_.vertical_fov;
+        camera.viewport = scenario_.viewport;
+        camera.near_plane = scenario_.near_plane;
+        path_->place(frame, camera);
+        return camera;
+    }
+    [[nodiscard]] Clock clock_at(int frame) const { return {frame, frame / scenario_.rate_hz}; }
+
+    const CellSpec& spec_;
+    VitalSigns& signs_;
+    CellResult& result_;
+    scenario::Scenario scenario_;
+    std::shared_ptr<const terrain::HeightField> terrain_;
+    std::unique_ptr<scenario::FlightPath> path_;
+    std::unique_ptr<Stage> stage_;
+    measure::TimerVerdict verdict_;
+    std::vector<int> shots_;
+    int hashed_frame_ = 0;
+    std::string timing_hash_;
+    int replay_ = 0;
+    int frame_ = 0;
+};
+
+void Flight::open() {
+    signs_.enter(Call::load_terrain);
+    terrain_ = terrain::load_terrain(scenario_.terrain);
+    path_ = scenario::make_path(scenario_.path, scenario_.frames, scenario_.rate_hz, *terrain_);
+    result_.terrain_name = terrain_->info().name;
+    result_.terrain_checksum = terrain_->info().checksum;
+    signs_.enter(Call::start);
+    stage_ = std::make_unique<Stage>(
+        StageSetup{terrain_, spec_.plugin, spec_.method, spec_.settings, spec_.device}, signs_);
+    stage_->check_state(true);
+    const gl::DeviceInfo& info = stage_->device().info();
+    result_.gl_vendor = info.vendor;
+    result_.gl_renderer = info.renderer;
+    result_.gl_version = info.version;
+    result_.software = info.software;
+    result_.device_description = stage_->context().description();
+    if (const std::string& bound = stage_->method().claimed_bound; !bound.empty()) {
+        result_.claimed_px = stage_->params().real(bound);
+    }
+    verdict_ = measure::test_timer(stage_->device());
+    result_.timer_verdict = verdict_.text;
+}
+
+void Flight::prepare() {
+    const Stopwatch wall;
+    const double cpu = process_cpu_seconds();
+    stage_->prepare();
+    glFinish();
+    result_.prepare_s = wall.seconds();
+    result_.prepare_cpu_s = process_cpu_seconds() - cpu;
+    const Stopwatch upload;
+    stage_->upload();
+    glFinish();
+    result_.upload_s = upload.seconds();
+    stage_->resize(scenario_.viewport);
+    result_.samples_served = terrain_->samples_served();
+}
+
+void Flight::choose_frames() {
+    shots_ = scenario_.measure.shots;
+    if (shots_.empty()) shots_ = {0, scenario_.frames / 2, scenario_.frames - 1};
+    // The frame whose picture is compared between the replays: by the seed, different per repetition.
+    std::uint64_t state = spec_.seed + 0x9e3779b97f4a7c15ULL * std::uint64_t(spec_.repetition + 1);
+    state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    state = (state ^ (state >> 27)) * 0x94d049bb133111ebULL;
+    hashed_frame_ = int((state ^ (state >> 31)) % std::uint64_t(scenario_.frames));
+}
+
+void Flight::fly_for_time() {
+    begin_replay(1);
+    const Camera first = camera_at(0);
+    for (int i = 0; i < scenario_.warmup_frames; ++i) {
+        begin_frame(0);
+        stage_->select(first, clock_at(0));
+        stage_->draw_picture();
+        glFinish();
+    }
+    stage_->check_state(false);
+    FrameTimer timer(stage_->device(), verdict_);
+    result_.frames.resize(std::size_t(scenario_.frames));
+    for (int frame = 0; frame < scenario_.frames; ++frame) {
+        begin_frame(frame);
+        const Camera camera = camera_at(frame);
+        const View view = picture_view(camera);
+        timer.begin_frame();
+        stage_->select(camera, clock_at(frame));
+        timer.end_select();
+        stage_->draw(view);
+        timer.end_submit();
+        if (frame == hashed_frame_) {
+            timer.drain();
+            timing_hash_ = stage_->depth_hash();
+        }
+    }
+    timer.finish();
+    for (int frame = 0; frame < scenario_.frames; ++frame) {
+        const FrameTimes& times = timer.frames()[std::size_t(frame)];
+        FrameRecord& record = result_.frames[std::size_t(frame)];
+        record.frame = frame;
+        record.wall_ms = times.wall_ms;
+        record.select_ms = times.select_ms;
+        record.submit_ms = times.submit_ms;
+        record.cpu_ms = times.cpu_ms;
+        record.gpu_ms = times.gpu_ms;
+    }
+    if (!timer.warning().empty()) result_.warnings.push_back(timer.warning());
+    stage_->check_state(true);
+}
+
+void Flight::fly_in_lockstep() {
+    begin_replay(2);
+    std::map<std::string, double> sums;
+    for (int frame = 0; frame < scenario_.frames; ++frame) {
+        begin_frame(frame);
+        FrameRecord& record = result_.frames[std::size_t(frame)];
+        const std::uint64_t uploaded = stage_->method_uploaded_bytes();
+        stage_->select(camera_at(frame), clock_at(frame));
+        stage_->settle();
+        const std::uint64_t draw_calls = stage_->device().draw_calls();
+        record.triangles = stage_->count_primitives();
+        record.draw_calls = stage_->device().draw_calls() - draw_calls;
+        record.uploaded_bytes = stage_->method_uploaded_bytes() - uploaded;
+        for (const auto& [name, value] : stage_->counters()) sums[name] += value;
+        if (frame % scenario_.measure.every == 0) measure_frame(record);
+        if (frame == hashed_frame_) {
+            stage_->draw_picture();
+            result_.depth_hash = stage_->depth_hash();
+            const bool comparable = (stage_->method().capabilities & kAsynchronous) == 0;
+            if (comparable && result_.depth_hash != timing_hash_) {
+                throw MethodFailure(fmt::format(
+                    "plugin {} draws another picture in the timing replay (depth hash {}) than in "
+                    "lockstep ({}): what is measured would not be what is timed",
+                    spec_.plugin.filename().string(), timing_hash_, result_.depth_hash));
+            }
+        }
+        if (spec_.repetition == 0 && std::ranges::find(shots_, frame) != shots_.end()) shoot(frame);
+    }
+    for (const auto& [name, sum] : sums) {
+        result_.counters.emplace_back(name, sum / scenario_.frames);
+    }
+    result_.gpu_bytes = stage_->method_gpu_bytes();
+}
+
+void Flight::measure_frame(FrameRecord& record) {
+    stage_->pause_background();
+    const measure::CapturedSurface surface = stage_->capture();
+    stage_->resume_background();
+    const auto broken = std::ranges::count_if(surface.vertices, [](const glm::vec3& v) {
+        return !std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z);
+    });
+    if (broken > 0) {
+        throw MethodFailure(fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
+                                        spec_.plugin.filename().string(), broken,
+                                        surface.vertices.size()));
+    }
+    record.triangles_nondegenerate = measure::nondegenerate_count(surface);
+}
+
+void Flight::shoot(int frame) {
+    const auto path = [&](const char* suffix) {
+        return spec_.out / "shots" / fmt::format("{}__f{:05}{}.png", spec_.id, frame, suffix);
+    };
+    const Viewport& size = scenario_.viewport;
+    stage_->draw_picture();
+    report::write_png(path(""), size.width, size.height, stage_->read_color());
+    stage_->draw_picture(true);
+    report::write_png(path("__wireframe"), size.width, size.height, stage_->read_color());
+}
+
+}  // namespace
+
+CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
+    CellResult result;
+    std::unique_ptr<Flight> flight;
+    const auto where = [&] { return flight ? flight->where() : std::string(); };
+    try {
+        flight = std::make_unique<Flight>(spec, signs, result);
+        flight->fly();
+        result.status = CellStatus::ok;
+    } catch (const MethodSkipped& skipped) {
+        result.status = CellStatus::skipped;
+        result.reason = skipped.what();
+    } catch (const std::exception& error) {
+        result.status = CellStatus::failed;
+        result.reason = error.what() + where();
+    }
+    if (result.status != CellStatus::ok) result.frames.clear();
+    return result;
+}
+
+}  // namespace lodbench::run
