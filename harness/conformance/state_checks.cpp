@@ -2,48 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <functional>
 #include <set>
 
 #include "conformance/session.h"
+#include "gl/alive_objects.h"
 
 namespace lodbench::conformance {
 
 namespace {
 
-/// Names of each kind that are objects in the current context, however they were made: bare GL included.
-/// Drivers number names from 1 upward, so that a leak shows among the first.
-struct NamesAlive {
-    static constexpr GLuint kProbed = 1U << 16;
-    static constexpr std::array<const char*, 9> kKinds = {
-        "buffers", "textures", "vertex arrays", "programs", "shaders",
-        "framebuffers", "renderbuffers", "queries", "samplers"};
-    std::array<int, 9> counts{};
-
-    static NamesAlive count() {
-        NamesAlive alive;
-        const auto probe = [&](std::size_t kind, auto is_object) {
-            for (GLuint name = 1; name <= kProbed; ++name) alive.counts[kind] += is_object(name) == GL_TRUE;
-        };
-        probe(0, glIsBuffer);
-        probe(1, glIsTexture);
-        probe(2, glIsVertexArray);
-        probe(3, glIsProgram);
-        probe(4, glIsShader);
-        probe(5, glIsFramebuffer);
-        probe(6, glIsRenderbuffer);
-        probe(7, glIsQuery);
-        probe(8, glIsSampler);
-        return alive;
-    }
-};
-
 /// Takes stock before the method makes its first object, and compares after `release`.
 class Inventory {
 public:
     explicit Inventory(run::Stage& stage)
-        : stage_(stage), counted_(stage.device().objects()), alive_(NamesAlive::count()) {}
+        : stage_(stage), counted_(stage.device().objects()), alive_(gl::count_alive_objects()) {}
 
     /// `host_pictures`: 1 where the stage has made its framebuffer (two textures) since, else 0.
     void require_restored(int host_pictures, const std::string& when) const {
@@ -63,23 +36,20 @@ public:
         compare("queries", expected.queries, now.queries);
         compare("fences", expected.fences, now.fences);
         if (!left.empty()) throw PromiseBroken(fmt::format("{}: not given back to gl/: {}", when, left));
-        // A name in use is deleted only when it is no longer bound.
-        glUseProgram(0);
-        glBindVertexArray(0);
-        const NamesAlive alive = NamesAlive::count();
-        for (std::size_t kind = 0; kind < alive.counts.size(); ++kind) {
-            const int host = kind == 1 ? 2 * host_pictures : kind == 5 ? host_pictures : 0;
-            compare(NamesAlive::kKinds[kind], alive_.counts[kind] + host, alive.counts[kind]);
-        }
-        if (!left.empty()) {
-            throw PromiseBroken(fmt::format("{}: made by bare GL and not deleted: {}", when, left));
+        gl::AliveObjects alive = alive_;
+        alive.textures += 2 * host_pictures;
+        alive.framebuffers += host_pictures;
+        const auto grown = gl::differences(alive, gl::count_alive_objects());
+        if (!grown.empty()) {
+            throw PromiseBroken(fmt::format("{}: made by bare GL and not deleted: {}", when,
+                                            fmt::join(grown, "; ")));
         }
     }
 
 private:
     run::Stage& stage_;
     gl::ObjectCounts counted_;
-    NamesAlive alive_;
+    gl::AliveObjects alive_;
 };
 
 run::StageSetup setup_of(const Subject& subject, TerrainPointer terrain) {
