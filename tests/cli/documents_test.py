@@ -9,7 +9,7 @@ import subprocess
 import sys
 import unittest
 
-SOURCE = pathlib.Path(sys.argv.pop(1))
+SOURCE = pathlib.Path(sys.argv.pop(1)).resolve()
 BINARY = sys.argv.pop(1)
 README = (SOURCE / "README.md").read_text()
 

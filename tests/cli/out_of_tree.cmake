@@ -1,5 +1,5 @@
 # A method outside the tree: installs lodbench into a prefix, moves that prefix, and there writes, builds,
-# lists and flies a new method with nothing but what was installed.
+# validates and flies a new method with nothing but what was installed.
 #
 # cmake -DBUILD_DIR=... -DWORK_DIR=... -DGENERATOR=... -P out_of_tree.cmake
 
@@ -33,6 +33,7 @@ step("list of the new method" ${lodbench} list --plugin-dir ${WORK_DIR}/hello/bu
 if(NOT output MATCHES "hello")
   message(FATAL_ERROR "the new method is not listed:\n${output}")
 endif()
+step("promises of the new method" ${lodbench} validate ${WORK_DIR}/hello/build/hello.so)
 step("flight of the new method" ${lodbench} run --plugin-dir ${WORK_DIR}/hello/build --method hello
      --frames 3 --size 64x48 --repeat 1 --out ${WORK_DIR}/results)
 file(READ ${WORK_DIR}/results/cells.jsonl cells)
