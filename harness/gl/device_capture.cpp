@@ -46,6 +46,8 @@ private:
 struct Device::Capture {
     CaptureSink sink;
     GLuint feedback = 0, buffer = 0, generated = 0, written = 0;
+    GLuint framebuffer = 0;  ///< 0 where the caller's own is complete
+    GLint draw_framebuffer_before = 0;
     std::size_t bytes = 0;
     bool discard_before = false;
 
@@ -55,9 +57,22 @@ struct Device::Capture {
         glCreateQueries(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, 1, &written);
         discard_before = glIsEnabled(GL_RASTERIZER_DISCARD) == GL_TRUE;
         glEnable(GL_RASTERIZER_DISCARD);
+        // Draw calls need a complete framebuffer even when nothing is rasterised, and a context without a
+        // surface has none to begin with.
+        if (glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+            glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_framebuffer_before);
+            glCreateFramebuffers(1, &framebuffer);
+            glNamedFramebufferParameteri(framebuffer, GL_FRAMEBUFFER_DEFAULT_WIDTH, 1);
+            glNamedFramebufferParameteri(framebuffer, GL_FRAMEBUFFER_DEFAULT_HEIGHT, 1);
+            glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+        }
     }
     ~Capture() {
         if (!discard_before) glDisable(GL_RASTERIZER_DISCARD);
+        if (framebuffer != 0) {
+            glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(draw_framebuffer_before));
+            glDeleteFramebuffers(1, &framebuffer);
+        }
         glDeleteTransformFeedbacks(1, &feedback);
         glDeleteQueries(1, &generated);
         glDeleteQueries(1, &written);
@@ -125,7 +140,8 @@ void Device::capture_draw(const std::function<void()>& draw) {
     if (written < generated) {
         const std::size_t needed = static_cast<std::size_t>(generated) * kTriangleBytes;
         if (needed > capture.bytes) {
-            capture.allocate(needed + needed / 8);
+            // Whole triangles: a feedback range whose size is no multiple of 4 is refused.
+            capture.allocate(needed + needed / 8 / kTriangleBytes * kTriangleBytes);
             feedback_bytes_ = capture.bytes;
         }
         std::tie(generated, written) = feed_back();
