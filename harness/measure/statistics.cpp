@@ -19,9 +19,10 @@ constexpr int kResamples = 10000;
 void require_no_nan(std::span<const double> values, const char* caller) {
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (std::isnan(values[i])) {
-            throw ContractError(fmt::format("{}: value {} is NaN; a value that was not measured must "
-                                            "be left out",
-                                            caller, i));
+            throw ContractError(
+                fmt::format("{}: value {} is NaN; a value that was not measured must "
+                            "be left out",
+                            caller, i));
         }
     }
 }
@@ -55,8 +56,7 @@ void require_probability(double p, const char* caller) {
 /// units in the last place (0.07 * 100 > 7), which must not push the rank up by one.
 std::size_t nearest_rank(double p, std::size_t n) {
     const double product = p * double(n);
-    const double rank =
-        std::ceil(product * (1 - 4 * std::numeric_limits<double>::epsilon()));
+    const double rank = std::ceil(product * (1 - 4 * std::numeric_limits<double>::epsilon()));
     return std::clamp<std::size_t>(std::size_t(rank), 1, n);
 }
 

@@ -35,9 +35,10 @@ namespace {
 std::string rehearse_in_child(const std::function<void()>& work, unsigned seconds) {
     const pid_t child = fork();
     if (child < 0) {
-        throw EnvironmentError(fmt::format("fork: {}; a child process is needed to read untrusted "
-                                           "files, free some processes",
-                                           std::strerror(errno)));
+        throw EnvironmentError(
+            fmt::format("fork: {}; a child process is needed to read untrusted "
+                        "files, free some processes",
+                        std::strerror(errno)));
     }
     if (child == 0) rehearse(work, seconds);
     int status = 0;

@@ -43,8 +43,8 @@ glm::dvec3 world_position(const glm::dvec3& written, const PathSpec& spec,
         position = {place, written.z};
     }
     if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
-        refuse(spec, fmt::format("the position [{}, {}, {}] is not finite; write numbers", written.x,
-                                 written.y, written.z));
+        refuse(spec, fmt::format("the position [{}, {}, {}] is not finite; write numbers",
+                                 written.x, written.y, written.z));
     }
     if (spec.above_ground) position.z += ground_height(terrain, glm::dvec2(position));
     return position;
@@ -55,8 +55,7 @@ class CurvePath final : public FlightPath {
 public:
     CurvePath(const PathSpec& spec, int frames, double rate_hz, const terrain::HeightField& terrain)
         : spec_(spec), frames_(frames), terrain_(terrain), curve_(make_curve(frames, rate_hz)) {
-        step_ = spec.speed > 0 ? spec.speed / rate_hz
-                               : curve_.length() / std::max(1, frames - 1);
+        step_ = spec.speed > 0 ? spec.speed / rate_hz : curve_.length() / std::max(1, frames - 1);
     }
 
     void place(int frame, Camera& camera) const override {
@@ -102,9 +101,10 @@ private:
             glm::dvec3 angle(keys[i].heading.value_or(0), keys[i].pitch, keys[i].roll);
             if (i > 0) {
                 if (glm::distance(position, positions.back()) < kLeastChord) {
-                    refuse(spec_, fmt::format("keyframe {} stands where keyframe {} stands; move or "
-                                              "remove one of them",
-                                              i + 1, i));
+                    refuse(spec_,
+                           fmt::format("keyframe {} stands where keyframe {} stands; move or "
+                                       "remove one of them",
+                                       i + 1, i));
                 }
                 angle.x = unwrapped(angles.back().x, angle.x);
                 angle.z = unwrapped(angles.back().z, angle.z);
@@ -130,7 +130,8 @@ private:
         return end;
     }
 
-    /// The tangent; where the curve turns back in one point and has none, the way it goes from there.
+    /// The tangent; where the curve turns back in one point and has none, the way it goes from
+    /// there.
     [[nodiscard]] glm::dvec3 flight_direction(double travelled, const CurvePoint& point) const {
         if (glm::length(point.tangent) > 1e-9 * curve_.length()) return point.tangent;
         const double ahead = 1e-3 * curve_.length();
@@ -189,9 +190,10 @@ public:
     RecordedPath(const PathSpec& spec, int frames)
         : frames_(frames), places_(load_recorded(spec.recorded)) {
         if (places_.size() < std::size_t(frames)) {
-            refuse(spec, fmt::format("{} has {} frames and the flight {}; record more frames or fly "
-                                     "fewer",
-                                     spec.recorded.string(), places_.size(), frames));
+            refuse(spec,
+                   fmt::format("{} has {} frames and the flight {}; record more frames or fly "
+                               "fewer",
+                               spec.recorded.string(), places_.size(), frames));
         }
     }
 
@@ -229,7 +231,8 @@ double ground_height(const terrain::HeightField& terrain, const glm::dvec2& posi
     const int column = std::min(int(x), info.columns - 2);
     const int row = std::min(int(y), info.rows - 2);
     const auto sample = [&](int r, int c) {
-        return double(terrain.samples()[std::size_t(r) * std::size_t(info.columns) + std::size_t(c)]);
+        return double(
+            terrain.samples()[std::size_t(r) * std::size_t(info.columns) + std::size_t(c)]);
     };
     const double u = x - column;
     const double v = y - row;
@@ -241,16 +244,18 @@ double ground_height(const terrain::HeightField& terrain, const glm::dvec2& posi
 std::unique_ptr<FlightPath> make_path(const PathSpec& spec, int frames, double rate_hz,
                                       const terrain::HeightField& terrain) {
     if (frames < 1 || !(rate_hz > 0)) {
-        throw ContractError(fmt::format("make_path: {} frames at {} Hz, expected at least 1 above 0 Hz",
-                                        frames, rate_hz));
+        throw ContractError(fmt::format(
+            "make_path: {} frames at {} Hz, expected at least 1 above 0 Hz", frames, rate_hz));
     }
     switch (spec.kind) {
         case PathKind::line:
         case PathKind::spline:
         case PathKind::terrain_following:
             return std::make_unique<CurvePath>(spec, frames, rate_hz, terrain);
-        case PathKind::orbit: return std::make_unique<OrbitPath>(spec, frames, terrain);
-        case PathKind::recorded: return std::make_unique<RecordedPath>(spec, frames);
+        case PathKind::orbit:
+            return std::make_unique<OrbitPath>(spec, frames, terrain);
+        case PathKind::recorded:
+            return std::make_unique<RecordedPath>(spec, frames);
     }
     throw ContractError("make_path: the kind of path is not one of PathKind");
 }

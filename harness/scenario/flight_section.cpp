@@ -27,7 +27,8 @@ void read_line(Section& flight, std::size_t dimensions, PathSpec& spec) {
     const auto start = flight.numbers("start", dimensions, dimensions);
     const auto end = flight.numbers("end", dimensions, dimensions);
     if (!start) {
-        flight.require("start", dimensions == 2 ? "write start = [x, y]" : "write start = [x, y, z]");
+        flight.require("start",
+                       dimensions == 2 ? "write start = [x, y]" : "write start = [x, y, z]");
     }
     Keyframe key{as_position(*start), {}, 0, 0};
     read_angles(flight, key);
@@ -54,7 +55,8 @@ void read_keyframes(Section& flight, std::size_t dimensions, PathSpec& spec) {
         if (!spec.keyframes.empty()) {
             const Keyframe& previous = spec.keyframes.back();
             if (previous.position == key.position) {
-                section.refuse("position", "that of the keyframe before; move or remove one of them");
+                section.refuse("position",
+                               "that of the keyframe before; move or remove one of them");
             }
             if (previous.heading.has_value() != key.heading.has_value()) {
                 section.refuse(key.heading ? "heading" : "position",
@@ -64,9 +66,10 @@ void read_keyframes(Section& flight, std::size_t dimensions, PathSpec& spec) {
         spec.keyframes.push_back(key);
     }
     if (spec.keyframes.size() < 2) {
-        flight.require("keyframe", fmt::format("write at least two tables [[flight.keyframe]], there "
-                                               "are {}",
-                                               spec.keyframes.size()));
+        flight.require("keyframe",
+                       fmt::format("write at least two tables [[flight.keyframe]], there "
+                                   "are {}",
+                                   spec.keyframes.size()));
     }
 }
 
@@ -140,10 +143,18 @@ PathSpec read_path(Section& flight, const std::filesystem::path& folder) {
         spec.speed = flight.number("speed", kSpeed).value_or(0);
     }
     switch (spec.kind) {
-        case PathKind::line: read_line(flight, 3, spec); break;
-        case PathKind::spline: read_keyframes(flight, 3, spec); break;
-        case PathKind::orbit: read_orbit(flight, spec); break;
-        case PathKind::terrain_following: read_terrain_following(flight, spec); break;
+        case PathKind::line:
+            read_line(flight, 3, spec);
+            break;
+        case PathKind::spline:
+            read_keyframes(flight, 3, spec);
+            break;
+        case PathKind::orbit:
+            read_orbit(flight, spec);
+            break;
+        case PathKind::terrain_following:
+            read_terrain_following(flight, spec);
+            break;
         case PathKind::recorded: {
             const auto file = flight.text("file");
             if (!file) flight.require("file", "write the CSV file of the recorded flight");

@@ -29,9 +29,9 @@ glm::dvec3 hermite_derivative(const glm::dvec3 (&h)[4], double u) {
     return (6 * u2 - 6 * u) * (h[0] - h[1]) + (3 * u2 - 4 * u + 1) * h[2] + (3 * u2 - 2 * u) * h[3];
 }
 
-/// Derivatives by the knot parameter at each point: inside, the derivative of the parabola through the
-/// point and its neighbours, which is the tangent of the non-uniform Catmull-Rom spline; at an end that of
-/// the chord, as a phantom point mirrored at the end gives.
+/// Derivatives by the knot parameter at each point: inside, the derivative of the parabola through
+/// the point and its neighbours, which is the tangent of the non-uniform Catmull-Rom spline; at an
+/// end that of the chord, as a phantom point mirrored at the end gives.
 std::vector<glm::dvec3> tangents(const std::vector<glm::dvec3>& values,
                                  const std::vector<double>& steps) {
     const std::size_t n = values.size();
@@ -95,7 +95,8 @@ CurvePoint Curve::at(double travelled) const {
     const auto piece = std::size_t(above - lengths_.begin()) - 1;
     const double start = double(piece % kPieces) / double(kPieces);
     const double wanted = travelled - lengths_[piece];
-    // The length grows with u, so that bisection always ends; 48 halvings leave 1 / 2^52 of a segment.
+    // The length grows with u, so that bisection always ends; 48 halvings leave 1 / 2^52 of a
+    // segment.
     double low = start;
     double high = start + 1.0 / kPieces;
     if (wanted <= 0) {

@@ -6,8 +6,8 @@
 
 namespace lodbench::scenario {
 
-/// `text` in double quotes; control characters, quotes and backslashes escaped, bytes that are not UTF-8
-/// as \xNN, cut after 80 bytes with "...".
+/// `text` in double quotes; control characters, quotes and backslashes escaped, bytes that are not
+/// UTF-8 as \xNN, cut after 80 bytes with "...".
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace lodbench::scenario

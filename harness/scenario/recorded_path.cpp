@@ -27,9 +27,10 @@ double number_of(std::string_view field, std::string_view name, const std::strin
                                      where, name, printable(field)));
     }
     if (std::abs(value) > kMaxMagnitude) {
-        throw InputError(fmt::format("{}: {} is {}, which is out of range; write a number between "
-                                     "-1e9 and 1e9",
-                                     where, name, printable(field)));
+        throw InputError(
+            fmt::format("{}: {} is {}, which is out of range; write a number between "
+                        "-1e9 and 1e9",
+                        where, name, printable(field)));
     }
     return value;
 }
@@ -50,16 +51,18 @@ RecordedPlace parse_row(std::string_view row, std::size_t frame, const std::stri
     double values[7];
     for (std::size_t i = 0; i < 7; ++i) values[i] = number_of(fields[i], kNames[i], where);
     if (values[0] != double(frame)) {
-        throw InputError(fmt::format("{}: frame is {} where {} was expected; number the rows 0, 1, "
-                                     "2, ... without gaps",
-                                     where, printable(fields[0]), frame));
+        throw InputError(
+            fmt::format("{}: frame is {} where {} was expected; number the rows 0, 1, "
+                        "2, ... without gaps",
+                        where, printable(fields[0]), frame));
     }
     return {{values[1], values[2], values[3]}, {values[4], values[5], values[6]}};
 }
 
 }  // namespace
 
-std::vector<RecordedPlace> parse_recorded(std::string_view text, const std::filesystem::path& file) {
+std::vector<RecordedPlace> parse_recorded(std::string_view text,
+                                          const std::filesystem::path& file) {
     std::vector<RecordedPlace> places;
     for (std::size_t line = 1; !text.empty(); ++line) {
         const std::size_t newline = text.find('\n');
@@ -75,9 +78,10 @@ std::vector<RecordedPlace> parse_recorded(std::string_view text, const std::file
         }
     }
     if (places.empty()) {
-        throw InputError(fmt::format("{}:1: the recorded flight has no frames; write the header {} "
-                                     "and one row a frame",
-                                     file.string(), kHeader));
+        throw InputError(
+            fmt::format("{}:1: the recorded flight has no frames; write the header {} "
+                        "and one row a frame",
+                        file.string(), kHeader));
     }
     return places;
 }
@@ -85,9 +89,10 @@ std::vector<RecordedPlace> parse_recorded(std::string_view text, const std::file
 std::vector<RecordedPlace> load_recorded(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) {
-        throw InputError(fmt::format("{}: the recorded flight is not a file that can be read; check "
-                                     "the path",
-                                     file.string()));
+        throw InputError(
+            fmt::format("{}: the recorded flight is not a file that can be read; check "
+                        "the path",
+                        file.string()));
     }
     if (std::filesystem::file_size(file, error) > kMaxBytes || error) {
         throw InputError(fmt::format("{}: the recorded flight is larger than {} bytes; split it",
@@ -97,8 +102,8 @@ std::vector<RecordedPlace> load_recorded(const std::filesystem::path& file) {
     std::ostringstream text;
     text << stream.rdbuf();
     if (!stream) {
-        throw InputError(fmt::format("{}: the recorded flight cannot be read; check its permissions",
-                                     file.string()));
+        throw InputError(fmt::format(
+            "{}: the recorded flight cannot be read; check its permissions", file.string()));
     }
     return parse_recorded(text.view(), file);
 }

@@ -14,9 +14,9 @@ struct RecordedPlace {
     glm::dvec3 angles{0.0};
 };
 
-/// Parses "frame,x,y,z,heading,pitch,roll": that header line, then one row of seven finite numbers for
-/// each frame 0, 1, 2, ... Lines end with LF or CRLF; there are no quotes, comments or empty lines.
-/// Throws InputError as "FILE:LINE: what VALUE is wrong with; remedy".
+/// Parses "frame,x,y,z,heading,pitch,roll": that header line, then one row of seven finite numbers
+/// for each frame 0, 1, 2, ... Lines end with LF or CRLF; there are no quotes, comments or empty
+/// lines. Throws InputError as "FILE:LINE: what VALUE is wrong with; remedy".
 [[nodiscard]] std::vector<RecordedPlace> parse_recorded(std::string_view text,
                                                         const std::filesystem::path& file);
 

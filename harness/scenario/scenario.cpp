@@ -44,12 +44,12 @@ void read_name(Section& top, const std::filesystem::path& file, Scenario& scenar
     const auto name = top.text("name");
     scenario.name = name.value_or(file.stem().string());
     if (is_name(scenario.name, false)) return;
-    const std::string remedy =
-        fmt::format("names are 1 to {} of A-Z a-z 0-9 _ -", kMaxNameBytes);
+    const std::string remedy = fmt::format("names are 1 to {} of A-Z a-z 0-9 _ -", kMaxNameBytes);
     if (name) top.refuse("name", remedy);
-    throw InputError(fmt::format("{}:1: the file's name {} cannot name the scenario ({}); write "
-                                 "name = \"...\" as its first line",
-                                 file.string(), printable(scenario.name), remedy));
+    throw InputError(
+        fmt::format("{}:1: the file's name {} cannot name the scenario ({}); write "
+                    "name = \"...\" as its first line",
+                    file.string(), printable(scenario.name), remedy));
 }
 
 void read_synthetic(Section& section, terrain::TerrainSource& source) {
@@ -63,8 +63,8 @@ void read_synthetic(Section& section, terrain::TerrainSource& source) {
         if (source.synthetic == known.name) form = &known;
     }
     if (form == nullptr) {
-        section.refuse("synthetic", "not a synthetic terrain; " +
-                                        Section::known_names(source.synthetic, forms));
+        section.refuse("synthetic",
+                       "not a synthetic terrain; " + Section::known_names(source.synthetic, forms));
     }
     auto shape = section.section("shape");
     if (!shape) return;
@@ -77,7 +77,8 @@ void read_synthetic(Section& section, terrain::TerrainSource& source) {
 void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& scenario) {
     auto section = top.section("terrain");
     if (!section) {
-        top.require("terrain", "write a table [terrain] with file = \"...\" or synthetic = \"...\"");
+        top.require("terrain",
+                    "write a table [terrain] with file = \"...\" or synthetic = \"...\"");
     }
     terrain::TerrainSource& source = scenario.terrain;
     source.where = section->where();
@@ -107,7 +108,8 @@ void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& s
     }
     source.vertical_scale = section->number("vertical_scale", {-1e6, 1e6});
     if (source.vertical_scale == 0) {
-        section->refuse("vertical_scale", "a scale of 0 makes every height the same; write another");
+        section->refuse("vertical_scale",
+                        "a scale of 0 makes every height the same; write another");
     }
     source.vertical_offset = section->number("vertical_offset");
     if (const auto origin = section->numbers("origin", 2, 2)) {
@@ -168,8 +170,10 @@ void read_measure_and_run(Section& top, Scenario& scenario) {
 /// A parameter's value as text; the plugin's own types decide later what it means.
 std::string setting_text(const Section& method, std::string_view key, const toml::node& node) {
     if (const auto* text = node.as_string()) {
-        if (text->get().empty() || text->get().size() > kMaxNameBytes || describe(node) != '"' + text->get() + '"') {
-            method.refuse(key, fmt::format("values are 1 to {} bytes of plain text", kMaxNameBytes));
+        if (text->get().empty() || text->get().size() > kMaxNameBytes ||
+            describe(node) != '"' + text->get() + '"') {
+            method.refuse(key,
+                          fmt::format("values are 1 to {} bytes of plain text", kMaxNameBytes));
         }
         return text->get();
     }
@@ -200,8 +204,8 @@ MethodRequest read_method(Section& section) {
             for (const toml::node& entry : *array) {
                 std::string value = setting_text(section, key.str(), entry);
                 if (std::find(values.begin(), values.end(), value) != values.end()) {
-                    section.refuse(key.str(), fmt::format("{} is there twice; remove one",
-                                                          printable(value)));
+                    section.refuse(key.str(),
+                                   fmt::format("{} is there twice; remove one", printable(value)));
                 }
                 values.push_back(std::move(value));
             }
@@ -236,8 +240,8 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
     Scenario scenario;
     scenario.text = text;
     // Unknown tables are told first: a mistyped [flight] must not read as a missing one.
-    for (const char* key : {"name", "terrain", "camera", "viewport", "flight", "measure", "run",
-                            "method"}) {
+    for (const char* key :
+         {"name", "terrain", "camera", "viewport", "flight", "measure", "run", "method"}) {
         (void)top.node(key);
     }
     top.refuse_unknown();
@@ -254,9 +258,10 @@ Scenario load_scenario(const std::filesystem::path& file) {
     const std::string text = terrain::read_toml_text(file);
     const std::string death = rehearse_in_child([&] { (void)parse_scenario(text, file); });
     if (!death.empty()) {
-        throw InputError(fmt::format("{}: the TOML parser {}; the file is damaged or too deeply "
-                                     "nested, simplify it",
-                                     file.string(), death));
+        throw InputError(
+            fmt::format("{}: the TOML parser {}; the file is damaged or too deeply "
+                        "nested, simplify it",
+                        file.string(), death));
     }
     return parse_scenario(text, file);
 }

@@ -25,9 +25,10 @@ struct MethodRequest {
 };
 
 struct MeasureOptions {
-    int every = 10;           ///< measure every n-th frame of the lockstep replay; >= 1
-    std::vector<int> shots;   ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
-    double budget_ms = 16.67; ///< for the jank sum
+    int every = 10;  ///< measure every n-th frame of the lockstep replay; >= 1
+    std::vector<int>
+        shots;  ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
+    double budget_ms = 16.67;  ///< for the jank sum
 };
 
 struct Scenario {
@@ -43,7 +44,7 @@ struct Scenario {
     int repetitions = 3;                       ///< >= 1
     std::uint64_t seed = 1;
     double cell_time_limit_s = 600;
-    double frame_time_limit_s = 60;            ///< no sign of life for so long is a hang
+    double frame_time_limit_s = 60;  ///< no sign of life for so long is a hang
     std::uint64_t memory_limit_bytes = 8ULL << 30;
     MeasureOptions measure;
     PathSpec path;
@@ -58,12 +59,14 @@ struct Overrides {
     std::optional<int> repetitions;
 };
 
-/// Parses a scenario. Relative files in it are relative to the scenario's folder. Caps file size (1 MiB),
-/// line length (4096 bytes) and nesting before the TOML parser sees the text. Throws InputError as
-/// "FILE:LINE: what VALUE is wrong with; remedy"; an unknown key is an error that lists the known ones.
+/// Parses a scenario. Relative files in it are relative to the scenario's folder. Caps file size (1
+/// MiB), line length (4096 bytes) and nesting before the TOML parser sees the text. Throws
+/// InputError as "FILE:LINE: what VALUE is wrong with; remedy"; an unknown key is an error that
+/// lists the known ones.
 [[nodiscard]] Scenario parse_scenario(std::string_view text, const std::filesystem::path& file);
 
-/// The same from a file, parsed in a child process first, so that a parser that dies costs a message only.
+/// The same from a file, parsed in a child process first, so that a parser that dies costs a
+/// message only.
 [[nodiscard]] Scenario load_scenario(const std::filesystem::path& file);
 
 void apply(const Overrides& overrides, Scenario& scenario);

@@ -112,23 +112,26 @@ std::optional<std::int64_t> Section::integer(std::string_view key, std::int64_t 
     if (found == nullptr) return std::nullopt;
     const auto* value = found->as_integer();
     if (value == nullptr) {
-        refuse_node(key, *found, fmt::format("{} where a whole number from {} to {} belongs",
-                                             kind_of(*found), minimum, maximum));
+        refuse_node(key, *found,
+                    fmt::format("{} where a whole number from {} to {} belongs", kind_of(*found),
+                                minimum, maximum));
     }
     if (value->get() < minimum || value->get() > maximum) {
-        refuse_node(key, *found, fmt::format("out of range; write a whole number from {} to {}",
-                                             minimum, maximum));
+        refuse_node(
+            key, *found,
+            fmt::format("out of range; write a whole number from {} to {}", minimum, maximum));
     }
     return value->get();
 }
 
 double Section::number_of(std::string_view key, const toml::node& found, Limits limits) const {
     if (!found.is_number()) {
-        refuse_node(key, found, fmt::format("{} where a number from {} to {} belongs",
-                                            kind_of(found), limits.minimum, limits.maximum));
+        refuse_node(key, found,
+                    fmt::format("{} where a number from {} to {} belongs", kind_of(found),
+                                limits.minimum, limits.maximum));
     }
-    const double value = found.is_integer() ? double(found.as_integer()->get())
-                                            : found.as_floating_point()->get();
+    const double value =
+        found.is_integer() ? double(found.as_integer()->get()) : found.as_floating_point()->get();
     if (!std::isfinite(value) || value < limits.minimum || value > limits.maximum) {
         refuse_node(key, found,
                     fmt::format("{}; write a number from {} to {}",
@@ -154,10 +157,13 @@ std::optional<std::string> Section::text(std::string_view key) {
     const std::string& written = value->get();
     if (written.empty()) refuse_node(key, *found, "empty; write some text or leave the key out");
     if (written.size() > kMaxTextBytes) {
-        refuse_node(key, *found, fmt::format("{} bytes of text; write at most {}", written.size(),
-                                             kMaxTextBytes));
+        refuse_node(
+            key, *found,
+            fmt::format("{} bytes of text; write at most {}", written.size(), kMaxTextBytes));
     }
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+    const auto is_control = [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    };
     if (std::any_of(written.begin(), written.end(), is_control)) {
         refuse_node(key, *found, "text with control characters; write it on one line without them");
     }
@@ -172,8 +178,8 @@ std::optional<std::vector<double>> Section::numbers(std::string_view key, std::s
         least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most);
     const toml::array* array = found->as_array();
     if (array == nullptr) {
-        refuse_node(key, *found, fmt::format("{} where an array of {} numbers belongs",
-                                             kind_of(*found), count));
+        refuse_node(key, *found,
+                    fmt::format("{} where an array of {} numbers belongs", kind_of(*found), count));
     }
     if (array->size() < least || array->size() > most) {
         refuse_node(key, *found, fmt::format("{} entries; write {} numbers", array->size(), count));
@@ -208,20 +214,19 @@ std::optional<Section> Section::section(std::string_view key) {
     if (found == nullptr) return std::nullopt;
     const toml::table* inner = found->as_table();
     if (inner == nullptr) {
-        refuse_node(key, *found, fmt::format("{} where a table belongs; write [{}] on a line and its "
-                                             "keys below",
-                                             kind_of(*found), key));
+        refuse_node(key, *found,
+                    fmt::format("{} where a table belongs; write [{}] on a line and its "
+                                "keys below",
+                                kind_of(*found), key));
     }
-    const std::string outer =
-        title_.empty() ? "" : title_.substr(1, title_.size() - 2) + ".";
+    const std::string outer = title_.empty() ? "" : title_.substr(1, title_.size() - 2) + ".";
     return Section(*inner, file_, fmt::format("[{}{}]", outer, key));
 }
 
 std::vector<Section> Section::sections(std::string_view key) {
     const toml::node* found = node(key);
     if (found == nullptr) return {};
-    const std::string outer =
-        title_.empty() ? "" : title_.substr(1, title_.size() - 2) + ".";
+    const std::string outer = title_.empty() ? "" : title_.substr(1, title_.size() - 2) + ".";
     const std::string title = fmt::format("[[{}{}]]", outer, key);
     const toml::array* array = found->as_array();
     if (array == nullptr || array->empty()) {
@@ -249,10 +254,9 @@ void Section::refuse_unknown() const {
         if (first == nullptr || key.source().begin < first->source().begin) first = &key;
     }
     if (first == nullptr) return;
-    throw InputError(fmt::format("{}: {}{}{} is not a key of a scenario; {}",
-                                 terrain::toml_place(*first, file_), title_,
-                                 title_.empty() ? "" : " ", printable(first->str()),
-                                 known_names(first->str(), asked_)));
+    throw InputError(fmt::format(
+        "{}: {}{}{} is not a key of a scenario; {}", terrain::toml_place(*first, file_), title_,
+        title_.empty() ? "" : " ", printable(first->str()), known_names(first->str(), asked_)));
 }
 
 }  // namespace lodbench::scenario

@@ -1,14 +1,14 @@
 #pragma once
-// One table of a scenario, read key by key: what is not asked for is unknown, and every refusal names file,
-// line, key, value and remedy. Include from .cpp files only: toml++ is heavy.
+// One table of a scenario, read key by key: what is not asked for is unknown, and every refusal
+// names file, line, key, value and remedy. Include from .cpp files only: toml++ is heavy.
 
+#include <toml++/toml.h>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <vector>
 
 namespace lodbench::scenario {
@@ -21,7 +21,8 @@ struct Limits {
 
 class Section {
 public:
-    /// `title` is how messages call it: "[flight]"; "" for the top level. The table must outlive it.
+    /// `title` is how messages call it: "[flight]"; "" for the top level. The table must outlive
+    /// it.
     Section(const toml::table& table, const std::filesystem::path& file, std::string title)
         : table_(table), file_(file), title_(std::move(title)) {}
 
@@ -33,8 +34,9 @@ public:
     /// Not empty, at most 4096 bytes, without control characters.
     [[nodiscard]] std::optional<std::string> text(std::string_view key);
     /// An array of `least` to `most` numbers.
-    [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::size_t least,
-                                                             std::size_t most, Limits limits = {});
+    [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key,
+                                                             std::size_t least, std::size_t most,
+                                                             Limits limits = {});
     [[nodiscard]] std::optional<std::vector<int>> integers(std::string_view key, int minimum,
                                                            int maximum);
     [[nodiscard]] std::optional<Section> section(std::string_view key);
@@ -46,7 +48,8 @@ public:
     [[nodiscard]] const toml::table& table() const { return table_; }
 
     /// A number from a node of this section.
-    [[nodiscard]] double number_of(std::string_view key, const toml::node& node, Limits limits) const;
+    [[nodiscard]] double number_of(std::string_view key, const toml::node& node,
+                                   Limits limits) const;
 
     /// "FILE:LINE" of the table, and of a key that is present.
     [[nodiscard]] std::string where() const;

@@ -47,9 +47,7 @@ terrain::HeightField flat_field() {
     return field([](double, double) { return 10.0; });
 }
 terrain::HeightField rough_field() {
-    return field([](double x, double y) {
-        return std::fmod(x * 7 + y * 13, 400.0);
-    });
+    return field([](double x, double y) { return std::fmod(x * 7 + y * 13, 400.0); });
 }
 
 Camera placed(const FlightPath& path, int frame) {
@@ -159,9 +157,10 @@ TEST(Line, starts_and_ends_exactly_and_moves_evenly) {
     EXPECT_EQ(placed(*path, 70).position, spec.keyframes[1].position);
     const glm::dvec3 step = (spec.keyframes[1].position - spec.keyframes[0].position) / 70.0;
     for (int frame = 0; frame < 71; ++frame) {
-        // The arc length is inverted to 2^-52 of the line; its table adds roundings of the same size.
-        expect_near(placed(*path, frame).position, spec.keyframes[0].position + double(frame) * step,
-                    1e-9);
+        // The arc length is inverted to 2^-52 of the line; its table adds roundings of the same
+        // size.
+        expect_near(placed(*path, frame).position,
+                    spec.keyframes[0].position + double(frame) * step, 1e-9);
     }
     const double heading = glm::degrees(std::atan2(step.x, step.y));
     for (const int frame : {0, 33, 70}) {
@@ -245,8 +244,8 @@ TEST(Spline, has_no_kink_in_position_or_view_and_a_constant_speed) {
     double largest_view_step = 0;
     for (std::size_t i = 1; i + 1 < positions.size(); ++i) {
         EXPECT_NEAR(glm::distance(positions[i + 1], positions[i]), step, step * 1e-4);
-        sharpest = std::max(sharpest, glm::length(positions[i + 1] - 2.0 * positions[i] +
-                                                  positions[i - 1]));
+        sharpest = std::max(sharpest,
+                            glm::length(positions[i + 1] - 2.0 * positions[i] + positions[i - 1]));
         sharpest_view =
             std::max(sharpest_view, glm::length(views[i + 1] - 2.0 * views[i] + views[i - 1]));
         largest_view_step = std::max(largest_view_step, glm::distance(views[i], views[i - 1]));
@@ -264,8 +263,8 @@ TEST(Spline, turns_heading_and_roll_the_shorter_way_round) {
     spec.keyframes[1].pitch = 0;
     spec.keyframes[0].roll = -170;
     const Camera middle = placed(*make_path(spec, 3, 60, ground), 1);
-    expect_near(middle.forward(), {0, 1, 0}, 1e-9);   // north, not south
-    expect_near(middle.up(), {0, 0, -1}, 1e-9);       // through 180, not 0
+    expect_near(middle.forward(), {0, 1, 0}, 1e-9);  // north, not south
+    expect_near(middle.up(), {0, 0, -1}, 1e-9);      // through 180, not 0
 }
 
 TEST(Spline, without_headings_looks_along_the_flight) {
@@ -277,7 +276,8 @@ TEST(Spline, without_headings_looks_along_the_flight) {
     }
     const auto path = make_path(spec, 10001, 60, ground);
     for (const int frame : {1, 2500, 5000, 9999}) {
-        glm::dvec3 direction = placed(*path, frame + 1).position - placed(*path, frame - 1).position;
+        glm::dvec3 direction =
+            placed(*path, frame + 1).position - placed(*path, frame - 1).position;
         direction.z = 0;
         expect_near(placed(*path, frame).forward(), glm::normalize(direction), 1e-3);
     }
@@ -287,7 +287,8 @@ TEST(Spline, that_turns_back_in_a_point_still_has_a_view) {
     const terrain::HeightField ground = flat_field();
     PathSpec spec;
     spec.kind = PathKind::spline;
-    spec.keyframes = {{{1000, 2000, 0}, {}, 0, 0}, {{1100, 2000, 0}, {}, 0, 0}, {{1000, 2000, 0}, {}, 0, 0}};
+    spec.keyframes = {
+        {{1000, 2000, 0}, {}, 0, 0}, {{1100, 2000, 0}, {}, 0, 0}, {{1000, 2000, 0}, {}, 0, 0}};
     const auto path = make_path(spec, 3, 60, ground);
     for (int frame = 0; frame < 3; ++frame) {
         EXPECT_NEAR(glm::length(placed(*path, frame).forward()), 1, kRounding);
@@ -298,8 +299,9 @@ TEST(Spline, that_turns_back_in_a_point_still_has_a_view) {
 TEST(Spline, refuses_what_makes_no_curve) {
     PathSpec spec = spline_spec();
     spec.keyframes[2].position = spec.keyframes[1].position;
-    EXPECT_EQ(refusal(spec),
-              "scenario.toml:7: keyframe 3 stands where keyframe 2 stands; move or remove one of them");
+    EXPECT_EQ(
+        refusal(spec),
+        "scenario.toml:7: keyframe 3 stands where keyframe 2 stands; move or remove one of them");
     spec = spline_spec();
     spec.keyframes[2].heading.reset();
     EXPECT_THAT(refusal(spec), HasSubstr("scenario.toml:7: keyframe 3 lacks a heading"));
@@ -354,9 +356,8 @@ TEST(TerrainFollowing, smoothed_is_calmer_and_never_below_its_margin) {
     spec.height = 25;
     spec.smoothing = 300;
     spec.margin = 10;
-    spec.keyframes = {{{1000, 2000, 0}, {}, 0, 0},
-                      {{1500, 2200, 0}, {}, 0, 0},
-                      {{1800, 2000, 0}, {}, 0, 0}};
+    spec.keyframes = {
+        {{1000, 2000, 0}, {}, 0, 0}, {{1500, 2200, 0}, {}, 0, 0}, {{1800, 2000, 0}, {}, 0, 0}};
     const auto smooth = make_path(spec, 500, 60, ground);
     spec.smoothing = 0;
     const auto exact = make_path(spec, 500, 60, ground);
@@ -385,8 +386,9 @@ TEST(Recorded, replays_its_rows_and_needs_enough_of_them) {
     const auto path = make_path(spec, 2, 60, ground);
     EXPECT_EQ(placed(*path, 1).position, glm::dvec3(1.5, -2000, 3.25));
     expect_near(placed(*path, 0).forward(), {1, 0, 0});
-    EXPECT_EQ(refusal(spec, 3), "scenario.toml:3: " + file.path().string() +
-                                    " has 2 frames and the flight 3; record more frames or fly fewer");
+    EXPECT_EQ(refusal(spec, 3),
+              "scenario.toml:3: " + file.path().string() +
+                  " has 2 frames and the flight 3; record more frames or fly fewer");
     spec.recorded = "/nonexistent/flight.csv";
     EXPECT_THAT(refusal(spec), HasSubstr("/nonexistent/flight.csv"));
 }
@@ -414,7 +416,8 @@ TEST(Recorded, names_file_and_line_of_what_is_wrong) {
                 HasSubstr("flight.csv:3: frame is \"2\" where 1 was expected"));
     for (const char* bad : {"nan", "inf", "-inf", "", " 1", "1 ", "1e999", "0x10", "1;", "+1"}) {
         EXPECT_THAT(message(header + "0,1," + bad + ",3,4,5,6\n"),
-                    HasSubstr("flight.csv:2: y is \"")) << bad;
+                    HasSubstr("flight.csv:2: y is \""))
+            << bad;
     }
     EXPECT_THAT(message(header + "0,1e10,2,3,4,5,6\n"), HasSubstr("out of range"));
     const std::string binary = message(header + std::string("\0\x01\xff\n", 4));

@@ -25,7 +25,8 @@ using ::testing::StartsWith;
 
 namespace {
 
-const std::filesystem::path kDemo = std::filesystem::path(LODBENCH_SOURCE_DIR) / "scenarios/demo.toml";
+const std::filesystem::path kDemo =
+    std::filesystem::path(LODBENCH_SOURCE_DIR) / "scenarios/demo.toml";
 
 std::string read(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
@@ -78,13 +79,17 @@ private:
 
 TEST(NastyToml, dotted_key_of_80_kilobytes) {
     EXPECT_THAT(refusal(repeated("a.", 40000) + "a = 1\n"), HasSubstr(":1: a line of 80005 bytes"));
-    EXPECT_THAT(refusal(repeated("a.", 1000) + "a = 1\n"), HasSubstr(":1: a dotted key of more than"));
-    EXPECT_THAT(refusal("[" + repeated("a . ", 1000) + "a]\n"), HasSubstr(":1: a dotted key of more than"));
+    EXPECT_THAT(refusal(repeated("a.", 1000) + "a = 1\n"),
+                HasSubstr(":1: a dotted key of more than"));
+    EXPECT_THAT(refusal("[" + repeated("a . ", 1000) + "a]\n"),
+                HasSubstr(":1: a dotted key of more than"));
 }
 
 TEST(NastyToml, line_of_a_mebibyte_and_file_beyond_it) {
-    EXPECT_THAT(refusal("x = \"" + std::string((1 << 20) - 10, 'y') + "\"\n"), HasSubstr(":1: a line of"));
-    EXPECT_THAT(refusal("# fine\n" + std::string(5000, '#')), HasSubstr(":2: a line of 5000 bytes"));
+    EXPECT_THAT(refusal("x = \"" + std::string((1 << 20) - 10, 'y') + "\"\n"),
+                HasSubstr(":1: a line of"));
+    EXPECT_THAT(refusal("# fine\n" + std::string(5000, '#')),
+                HasSubstr(":2: a line of 5000 bytes"));
     EXPECT_THAT(refusal(repeated("# one line of many\n", 60000)), HasSubstr("1048576"));
 }
 
@@ -119,16 +124,18 @@ TEST(NastyToml, duplicate_keys_and_tables) {
 }
 
 TEST(NastyToml, unterminated_things) {
-    for (const char* text : {"x = \"", "x = '''", "x = [", "x = {", "[", "[[", "x", "x =", "= 1", "x = \"\\",
-                             "x = \"\\u12", "x = 0x", "x = 1e", "x = 99999999999999999999", "\"", "x = 1979-",
-                             "[terrain", "name = \"\xff\xfe\"", "name = \"\xed\xa0\x80\""}) {
+    for (const char* text :
+         {"x = \"", "x = '''", "x = [", "x = {", "[", "[[", "x", "x =", "= 1", "x = \"\\",
+          "x = \"\\u12", "x = 0x", "x = 1e", "x = 99999999999999999999", "\"", "x = 1979-",
+          "[terrain", "name = \"\xff\xfe\"", "name = \"\xed\xa0\x80\""}) {
         EXPECT_NE(refusal(text), "accepted") << text;
     }
 }
 
 TEST(NastyToml, control_characters_and_long_names_come_back_escaped_and_cut) {
     EXPECT_THAT(refusal("name = \"a\\n\\u001b[31m\"\n"), HasSubstr("a\\x0a\\x1b[31m"));
-    EXPECT_THAT(refusal("\"" + std::string(4000, 'k') + "\" = 1\n"), HasSubstr("kkk...\" is not a key"));
+    EXPECT_THAT(refusal("\"" + std::string(4000, 'k') + "\" = 1\n"),
+                HasSubstr("kkk...\" is not a key"));
 }
 
 TEST(NastyToml, byte_order_mark_and_crlf_are_accepted_as_toml_has_them) {
@@ -157,13 +164,22 @@ TEST(NastyToml, mutations_of_a_good_file_parse_or_are_refused) {
         std::string text = good;
         for (std::uint32_t edit = random.below(4) + 1; edit > 0 && !text.empty(); --edit) {
             const std::uint32_t at = random.below(std::uint32_t(text.size()));
-            const char c = random.below(2) == 0 ? char(random.below(256))
-                                                : interesting[random.below(std::uint32_t(interesting.size()))];
+            const char c = random.below(2) == 0
+                               ? char(random.below(256))
+                               : interesting[random.below(std::uint32_t(interesting.size()))];
             switch (random.below(4)) {
-                case 0: text[at] = c; break;
-                case 1: text.insert(at, 1, c); break;
-                case 2: text.erase(at, 1 + random.below(8)); break;
-                default: text.insert(at, text.substr(random.below(std::uint32_t(text.size())), 40)); break;
+                case 0:
+                    text[at] = c;
+                    break;
+                case 1:
+                    text.insert(at, 1, c);
+                    break;
+                case 2:
+                    text.erase(at, 1 + random.below(8));
+                    break;
+                default:
+                    text.insert(at, text.substr(random.below(std::uint32_t(text.size())), 40));
+                    break;
             }
         }
         try {
@@ -186,7 +202,12 @@ TEST(ChildRehearsal, tells_deaths_from_refusals) {
     EXPECT_EQ(rehearse_in_child([] { throw std::runtime_error("a refusal"); }), "");
     EXPECT_EQ(rehearse_in_child([] { std::raise(SIGKILL); }), "died with signal 9");
     EXPECT_EQ(rehearse_in_child([] { _exit(3); }), "ended with exit status 3");
-    EXPECT_EQ(rehearse_in_child([] { for (;;) pause(); }, 1), "died with signal 14");
+    EXPECT_EQ(rehearse_in_child(
+                  [] {
+                      for (;;) pause();
+                  },
+                  1),
+              "died with signal 14");
 }
 
 TEST(ChildRehearsal, survives_an_abort) {

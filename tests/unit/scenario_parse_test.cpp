@@ -166,7 +166,8 @@ order = "bfs"
 }
 
 TEST(Scenario, every_kind_of_flight_reads_its_keys) {
-    EXPECT_EQ(parse(flight("kind='line'\nstart=[0,0,1]\nheading=90\nspeed=10\npitch=-5")).path.speed, 10);
+    EXPECT_EQ(
+        parse(flight("kind='line'\nstart=[0,0,1]\nheading=90\nspeed=10\npitch=-5")).path.speed, 10);
     const PathSpec orbit =
         parse(flight("kind='orbit'\ncentre=[1,2]\nradius=5\nheight=6\nturns=-2\nbearing=90")).path;
     EXPECT_EQ(orbit.centre, glm::dvec3(1, 2, 0));
@@ -175,25 +176,29 @@ TEST(Scenario, every_kind_of_flight_reads_its_keys) {
     EXPECT_EQ(orbit.turns, -2);
     EXPECT_EQ(orbit.bearing, 90);
     const PathSpec following = parse(flight("kind='terrain-following'\nstart=[1,2]\nend=[3,4]\n"
-                                            "height=50\nsmoothing=200\nmargin=20")).path;
+                                            "height=50\nsmoothing=200\nmargin=20"))
+                                   .path;
     EXPECT_EQ(following.height, 50);
     EXPECT_EQ(following.smoothing, 200);
     EXPECT_EQ(following.margin, 20);
     EXPECT_EQ(following.keyframes.size(), 2U);
     EXPECT_EQ(parse(flight("kind='terrain-following'\nheight=50\n[[flight.keyframe]]\n"
                            "position=[0,0]\n[[flight.keyframe]]\nposition=[1,0]"))
-                  .path.keyframes.size(), 2U);
+                  .path.keyframes.size(),
+              2U);
 }
 
 TEST(Scenario, unknown_keys_name_the_nearest_and_list_the_known) {
-    EXPECT_EQ(refusal(kLeast + "[camera]\nvertical_fow = 60\n"),
-              "flights/least.toml:9: [camera] \"vertical_fow\" is not a key of a scenario; did you mean "
-              "vertical_fov? known: vertical_fov, near");
+    EXPECT_EQ(
+        refusal(kLeast + "[camera]\nvertical_fow = 60\n"),
+        "flights/least.toml:9: [camera] \"vertical_fow\" is not a key of a scenario; did you mean "
+        "vertical_fov? known: vertical_fov, near");
     EXPECT_THAT(refusal(kLeast + "[fligth]\n"),
                 AllOf(StartsWith("flights/least.toml:8: \"fligth\""),
                       HasSubstr("did you mean flight? known: name, terrain")));
-    EXPECT_THAT(refusal(kLeast + "radius = 3\n"),
-                AllOf(StartsWith("flights/least.toml:8: [flight] \"radius\""), HasSubstr("start, end")));
+    EXPECT_THAT(
+        refusal(kLeast + "radius = 3\n"),
+        AllOf(StartsWith("flights/least.toml:8: [flight] \"radius\""), HasSubstr("start, end")));
     EXPECT_THAT(refusal("[terrain]\nsynthetic = \"bump\"\n[terrain.shape]\nhieght = 3\n"),
                 AllOf(StartsWith("flights/least.toml:4: [terrain.shape] \"hieght\""),
                       HasSubstr("known: ")));
@@ -208,7 +213,8 @@ TEST(Scenario, wrong_types_name_line_value_and_what_belongs) {
         {"[camera]\nnear = [1]\n", "[camera] near = an array: an array where a number"},
         {"[camera]\nnear = 2020-01-01\n", "a date or time where a number"},
         {"[measure]\nshots = 3\n", "[measure] shots = 3: a whole number where an array"},
-        {"[measure]\nshots = [0, \"x\"]\n", "[measure] shots = \"x\": write whole numbers from 0 to 119"},
+        {"[measure]\nshots = [0, \"x\"]\n",
+         "[measure] shots = \"x\": write whole numbers from 0 to 119"},
         {"[[method]]\nid = 3\n", "[[method]] id = 3: a whole number where text"},
         {"[method]\nid = \"pgm\"\n", "method = a table: write one or more tables [[method]]"},
     };
@@ -218,7 +224,8 @@ TEST(Scenario, wrong_types_name_line_value_and_what_belongs) {
         EXPECT_THAT(message, HasSubstr(expected)) << text;
     }
     EXPECT_THAT(refusal("terrain = 3\n"), HasSubstr("a table belongs; write [terrain]"));
-    EXPECT_THAT(refusal("name = true\n" + kLeast), StartsWith("flights/least.toml:1: name = true:"));
+    EXPECT_THAT(refusal("name = true\n" + kLeast),
+                StartsWith("flights/least.toml:1: name = true:"));
 }
 
 TEST(Scenario, values_out_of_range_name_the_range) {
@@ -226,9 +233,11 @@ TEST(Scenario, values_out_of_range_name_the_range) {
         {"rate_hz = 0\n", "rate_hz = 0: out of range; write a number from 0.001 to"},
         {"rate_hz = nan\n", "rate_hz = nan: not a finite number"},
         {"rate_hz = -inf\n", "rate_hz = -inf: not a finite number"},
-        {"[camera]\nvertical_fov = 180\n", "vertical_fov = 180: out of range; write a number from 1 to 170"},
+        {"[camera]\nvertical_fov = 180\n",
+         "vertical_fov = 180: out of range; write a number from 1 to 170"},
         {"[camera]\nnear = 0\n", "near = 0: out of range"},
-        {"[viewport]\nwidth = 0\n", "width = 0: out of range; write a whole number from 1 to 16384"},
+        {"[viewport]\nwidth = 0\n",
+         "width = 0: out of range; write a whole number from 1 to 16384"},
         {"[viewport]\nheight = 99999999999\n", "height = 99999999999: out of range"},
         {"[measure]\nshots = [120]\n", "shots = 120: write whole numbers from 0 to 119"},
         {"[measure]\nevery = 0\n", "every = 0: out of range"},
@@ -238,50 +247,73 @@ TEST(Scenario, values_out_of_range_name_the_range) {
         {"[[method]]\nid = \"pgm\"\ntau = []\n", "tau = an array: 0 values"},
         {"[[method]]\nid = \"pgm\"\ntau = [1, 1]\n", "\"1\" is there twice"},
         {"[[method]]\nid = \"pgm\"\ntau = nan\n", "tau = nan: not a finite number"},
-        {"[[method]]\nid = \"pgm\"\ntau = [[1]]\n", "write a number, true or false, text, or an array"},
-        {"[[method]]\nid = \"pgm\"\n[[method]]\nid = \"pgm\"\n", "the same settings as at flights/least.toml:8"},
+        {"[[method]]\nid = \"pgm\"\ntau = [[1]]\n",
+         "write a number, true or false, text, or an array"},
+        {"[[method]]\nid = \"pgm\"\n[[method]]\nid = \"pgm\"\n",
+         "the same settings as at flights/least.toml:8"},
     };
     for (const auto& [text, expected] : cases) {
         const std::string message = refusal(kLeast + text);
         EXPECT_THAT(message, StartsWith("flights/least.toml:")) << text;
         EXPECT_THAT(message, HasSubstr(expected)) << text;
     }
-    EXPECT_THAT(refusal("name = \"a b\"\n" + kLeast), HasSubstr("name = \"a b\": names are 1 to 64"));
+    EXPECT_THAT(refusal("name = \"a b\"\n" + kLeast),
+                HasSubstr("name = \"a b\": names are 1 to 64"));
 }
 
 TEST(Scenario, terrain_needs_one_source_that_exists) {
     const auto terrain = [](const std::string& keys) { return refusal("[terrain]\n" + keys); };
-    EXPECT_THAT(refusal("name = \"x\"\n"), HasSubstr("terrain is missing: write a table [terrain]"));
+    EXPECT_THAT(refusal("name = \"x\"\n"),
+                HasSubstr("terrain is missing: write a table [terrain]"));
     EXPECT_THAT(terrain(""), HasSubstr("[terrain] file is missing"));
-    EXPECT_THAT(terrain("file = \"a.png\"\nsynthetic = \"plane\"\n"), HasSubstr("only one of the two"));
-    EXPECT_THAT(terrain("file = \"no/such.png\"\n"),
-                AllOf(StartsWith("flights/least.toml:2: [terrain] file = \"no/such.png\": no such file"),
-                      HasSubstr("flights/no/such.png")));
-    EXPECT_THAT(terrain("synthetic = \"plain\"\n"), HasSubstr("did you mean plane? known: plane, ramp"));
-    EXPECT_THAT(terrain("synthetic = \"plane\"\nspacing = 0\n"), HasSubstr("spacing = 0: out of range"));
-    EXPECT_THAT(terrain("synthetic = \"plane\"\nspacing = [1, 2, 3]\n"), HasSubstr("3 entries; write 2 numbers"));
-    EXPECT_THAT(terrain("synthetic = \"plane\"\nspacing = \"1\"\n"), HasSubstr("text where an array of 2"));
+    EXPECT_THAT(terrain("file = \"a.png\"\nsynthetic = \"plane\"\n"),
+                HasSubstr("only one of the two"));
+    EXPECT_THAT(
+        terrain("file = \"no/such.png\"\n"),
+        AllOf(StartsWith("flights/least.toml:2: [terrain] file = \"no/such.png\": no such file"),
+              HasSubstr("flights/no/such.png")));
+    EXPECT_THAT(terrain("synthetic = \"plain\"\n"),
+                HasSubstr("did you mean plane? known: plane, ramp"));
+    EXPECT_THAT(terrain("synthetic = \"plane\"\nspacing = 0\n"),
+                HasSubstr("spacing = 0: out of range"));
+    EXPECT_THAT(terrain("synthetic = \"plane\"\nspacing = [1, 2, 3]\n"),
+                HasSubstr("3 entries; write 2 numbers"));
+    EXPECT_THAT(terrain("synthetic = \"plane\"\nspacing = \"1\"\n"),
+                HasSubstr("text where an array of 2"));
     EXPECT_THAT(terrain("synthetic = \"plane\"\nrows = 1\n"), HasSubstr("rows = 1: out of range"));
-    EXPECT_THAT(terrain("synthetic = \"plane\"\nvertical_scale = 0\n"), HasSubstr("every height the same"));
-    EXPECT_THAT(terrain("synthetic = \"plane\"\nno_data = 0\n"), HasSubstr("\"no_data\" is not a key"));
+    EXPECT_THAT(terrain("synthetic = \"plane\"\nvertical_scale = 0\n"),
+                HasSubstr("every height the same"));
+    EXPECT_THAT(terrain("synthetic = \"plane\"\nno_data = 0\n"),
+                HasSubstr("\"no_data\" is not a key"));
 }
 
 TEST(Scenario, flight_says_what_its_kind_lacks) {
-    EXPECT_THAT(refusal("[terrain]\nsynthetic = \"plane\"\n"), HasSubstr("flight is missing: write a table [flight]"));
-    EXPECT_THAT(refusal(flight("frames = 3\n")), HasSubstr("[flight] kind is missing: known: line, spline"));
+    EXPECT_THAT(refusal("[terrain]\nsynthetic = \"plane\"\n"),
+                HasSubstr("flight is missing: write a table [flight]"));
+    EXPECT_THAT(refusal(flight("frames = 3\n")),
+                HasSubstr("[flight] kind is missing: known: line, spline"));
     EXPECT_THAT(refusal(flight("kind = \"splne\"\n")), HasSubstr("did you mean spline?"));
-    EXPECT_THAT(refusal(flight("kind = \"line\"\n")), HasSubstr("start is missing: write start = [x, y, z]"));
-    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, 0, 0]\n")), HasSubstr("write end, or heading and speed"));
-    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, 0]\n")), HasSubstr("2 entries; write 3 numbers"));
-    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, 0, 0]\nend = [0, 0, 0]\n")), HasSubstr("the same as start"));
-    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, nan, 0]\n")), HasSubstr("start = nan: not a finite number"));
-    EXPECT_THAT(refusal(flight("kind = \"orbit\"\ncentre = [0, 0]\n")), HasSubstr("radius is missing"));
-    EXPECT_THAT(refusal(flight("kind = \"orbit\"\ncentre = [0, 0]\nradius = 0\n")), HasSubstr("radius = 0: out of range"));
+    EXPECT_THAT(refusal(flight("kind = \"line\"\n")),
+                HasSubstr("start is missing: write start = [x, y, z]"));
+    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, 0, 0]\n")),
+                HasSubstr("write end, or heading and speed"));
+    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, 0]\n")),
+                HasSubstr("2 entries; write 3 numbers"));
+    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, 0, 0]\nend = [0, 0, 0]\n")),
+                HasSubstr("the same as start"));
+    EXPECT_THAT(refusal(flight("kind = \"line\"\nstart = [0, nan, 0]\n")),
+                HasSubstr("start = nan: not a finite number"));
+    EXPECT_THAT(refusal(flight("kind = \"orbit\"\ncentre = [0, 0]\n")),
+                HasSubstr("radius is missing"));
+    EXPECT_THAT(refusal(flight("kind = \"orbit\"\ncentre = [0, 0]\nradius = 0\n")),
+                HasSubstr("radius = 0: out of range"));
     EXPECT_THAT(refusal(flight("kind = \"spline\"\n")), HasSubstr("there are 0"));
-    EXPECT_THAT(refusal(flight("kind = \"spline\"\n[[flight.keyframe]]\nposition=[0,0,0]\nheading=1\n"
-                               "[[flight.keyframe]]\nposition=[1,0,0]\n")),
-                AllOf(StartsWith("flights/least.toml:9:"), HasSubstr("give all keyframes a heading")));
-    EXPECT_THAT(refusal(flight("kind = \"terrain-following\"\nstart=[0,0]\nend=[1,0]\nheight=5\nmargin=6\n")),
+    EXPECT_THAT(
+        refusal(flight("kind = \"spline\"\n[[flight.keyframe]]\nposition=[0,0,0]\nheading=1\n"
+                       "[[flight.keyframe]]\nposition=[1,0,0]\n")),
+        AllOf(StartsWith("flights/least.toml:9:"), HasSubstr("give all keyframes a heading")));
+    EXPECT_THAT(refusal(flight(
+                    "kind = \"terrain-following\"\nstart=[0,0]\nend=[1,0]\nheight=5\nmargin=6\n")),
                 HasSubstr("margin = 6: out of range"));
     EXPECT_THAT(refusal(flight("kind = \"recorded\"\nfile = \"none.csv\"\n")),
                 StartsWith("flights/least.toml:5: [flight] file = \"none.csv\": no such file"));
@@ -307,10 +339,13 @@ TEST(Overrides, replace_what_they_name_and_are_checked) {
     EXPECT_EQ(scenario.seed, 5U);
     EXPECT_EQ(scenario.repetitions, 2);
     EXPECT_THAT(scenario.measure.shots, ElementsAre(0));
-    EXPECT_THROW(apply({.frames = 0, .viewport = {}, .seed = {}, .repetitions = {}}, scenario), InputError);
-    EXPECT_THROW(apply({.frames = {}, .viewport = Viewport{0, 4}, .seed = {}, .repetitions = {}}, scenario),
+    EXPECT_THROW(apply({.frames = 0, .viewport = {}, .seed = {}, .repetitions = {}}, scenario),
                  InputError);
-    EXPECT_THROW(apply({.frames = {}, .viewport = {}, .seed = {}, .repetitions = -1}, scenario), InputError);
+    EXPECT_THROW(
+        apply({.frames = {}, .viewport = Viewport{0, 4}, .seed = {}, .repetitions = {}}, scenario),
+        InputError);
+    EXPECT_THROW(apply({.frames = {}, .viewport = {}, .seed = {}, .repetitions = -1}, scenario),
+                 InputError);
 }
 
 TEST(Demo, is_a_scenario_over_the_embedded_terrain) {
