@@ -1,7 +1,75 @@
+// lodbench describe METHOD: its paper, parameters and promises.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "api/error.h"
 #include "cli/commands.h"
+#include "cli/method_json.h"
+#include "report/json.h"
+#include "run/plugin_library.h"
 
 namespace lodbench::cli {
 
-void add_describe(CLI::App&, int&) {}
+namespace {
+
+struct Options {
+    std::string method;
+    std::vector<std::filesystem::path> plugin_dirs;
+    bool json = false;
+};
+
+void print(const run::MethodInfo& method) {
+    fmt::print("{}: {}\n", method.id, method.title);
+    if (!method.citation.empty()) fmt::print("paper      {}\n", method.citation);
+    fmt::print("version    {}\nplugin     {}\n", method.version, method.plugin.string());
+    fmt::print("quality    {}\n", method.quality_knob.empty() ? "exact: no knob" : method.quality_knob);
+    fmt::print("bound      {}\n", method.claimed_bound.empty()
+                                      ? "none claimed"
+                                      : method.claimed_bound + " bounds the screen error in pixels");
+    for (const std::string& name : method.gl_extensions) fmt::print("needs      {}\n", name);
+    if (method.params.empty()) return;
+    fmt::print("parameters\n");
+    for (const run::ParamInfo& param : method.params) {
+        fmt::print("  {:<18} {:<8} {:<10} {}\n  {:<18} {}\n", param.name, type_words(param),
+                   default_words(param), range_words(param), "", param.help);
+    }
+}
+
+int describe(const Options& options) {
+    const auto plugins = run::list_plugins(run::plugin_folders(options.plugin_dirs));
+    std::vector<std::string> known;
+    std::string refusals;
+    for (const run::PluginListing& plugin : plugins) {
+        if (!plugin.refusal.empty()) refusals += "; " + plugin.refusal;
+        for (const run::MethodInfo& method : plugin.methods) {
+            known.push_back(method.id);
+            if (method.id != options.method) continue;
+            if (options.json) {
+                fmt::print("{}\n", report::to_text(method_json(method)));
+            } else {
+                print(method);
+            }
+            return 0;
+        }
+    }
+    throw InputError(fmt::format("no method '{}' was found; known: {}{}", options.method,
+                                 known.empty() ? std::string("none") : fmt::format("{}", fmt::join(known, ", ")),
+                                 refusals));
+}
+
+}  // namespace
+
+void add_describe(CLI::App& app, int& status) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("describe", "Shows a method's paper, parameters and promises.");
+    command->add_option("method", options->method, "id of the method")->required();
+    command->add_option("--plugin-dir", options->plugin_dirs, "folder with plugins (again for more)")
+        ->allow_extra_args(false);
+    command->add_flag("--json", options->json, "JSON for programs");
+    command->callback([options, &status] { status = describe(*options); });
+}
 
 }  // namespace lodbench::cli

@@ -1,7 +1,77 @@
+// lodbench list: which methods there are, which plugins cannot be used and why, which devices.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
 #include "cli/commands.h"
+#include "cli/method_json.h"
+#include "platform/context.h"
+#include "report/json.h"
+#include "run/plugin_library.h"
 
 namespace lodbench::cli {
 
-void add_list(CLI::App&, int&) {}
+namespace {
+
+struct Options {
+    std::vector<std::filesystem::path> plugin_dirs;
+    bool json = false;
+    bool devices = false;
+};
+
+int list_devices(bool json) {
+    Json::Value array = Json::arrayValue;
+    for (const platform::DeviceEntry& device : platform::list_devices()) {
+        if (!json) {
+            fmt::print("{:>3}  {}{}\n", device.number, device.name, device.software ? "  (software)" : "");
+            continue;
+        }
+        Json::Value entry;
+        entry["number"] = device.number;
+        entry["name"] = device.name;
+        entry["software"] = device.software;
+        array.append(entry);
+    }
+    if (json) fmt::print("{}\n", report::to_text(array));
+    return 0;
+}
+
+int list_methods(const Options& options) {
+    const auto plugins = run::list_plugins(run::plugin_folders(options.plugin_dirs));
+    Json::Value object;
+    object["methods"] = Json::arrayValue;
+    object["refused"] = Json::arrayValue;
+    for (const run::PluginListing& plugin : plugins) {
+        if (!plugin.refusal.empty()) {
+            fmt::print(stderr, "warning: {}\n", plugin.refusal);
+            Json::Value refused;
+            refused["path"] = plugin.path.string();
+            refused["refusal"] = plugin.refusal;
+            object["refused"].append(refused);
+        }
+        for (const run::MethodInfo& method : plugin.methods) {
+            object["methods"].append(method_json(method));
+            if (!options.json) fmt::print("{:<20} {}\n", method.id, method.title);
+        }
+    }
+    if (options.json) fmt::print("{}\n", report::to_text(object));
+    return 0;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, int& status) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("list", "Shows the methods that were found, and the devices.");
+    command->add_option("--plugin-dir", options->plugin_dirs, "folder with plugins (again for more)")
+        ->allow_extra_args(false);
+    command->add_flag("--devices", options->devices, "the EGL devices instead, for --device");
+    command->add_flag("--json", options->json, "JSON for programs");
+    command->callback([options, &status] {
+        status = options->devices ? list_devices(options->json) : list_methods(*options);
+    });
+}
 
 }  // namespace lodbench::cli

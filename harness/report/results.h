@@ -19,6 +19,9 @@ void write_whole(const std::filesystem::path& path, std::string_view text);
 /// truncated back to what it was and EnvironmentError thrown.
 void append_line(const std::filesystem::path& path, std::string_view line);
 
+/// All of a file. Throws EnvironmentError with its name and the system's words.
+[[nodiscard]] std::string read_text(const std::filesystem::path& path);
+
 /// Complete lines of a JSON-lines file; a last line without newline (a writer was killed) is dropped and
 /// the file cut back to the last complete line when `repair`.
 [[nodiscard]] std::vector<std::string> read_lines(const std::filesystem::path& path, bool repair);

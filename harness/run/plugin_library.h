@@ -1,6 +1,7 @@
 #pragma once
 // Plugins on disk, and the one that is loaded. The library owns the dlopen handle.
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -46,7 +47,9 @@ struct PluginListing {
 /// constructor aborts, loops or exits costs its own line. Two plugins with one id are both refused.
 [[nodiscard]] std::vector<PluginListing> list_plugins(
     const std::vector<std::filesystem::path>& folders);
-[[nodiscard]] PluginListing list_plugin(const std::filesystem::path& plugin);
+[[nodiscard]] PluginListing list_plugin(
+    const std::filesystem::path& plugin,
+    std::chrono::milliseconds time_limit = std::chrono::seconds(10));
 
 /// A plugin that is open in this process (RTLD_NOW | RTLD_LOCAL).
 class PluginLibrary {

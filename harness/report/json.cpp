@@ -1,0 +1,77 @@
+#include "report/json.h"
+
+#include <fmt/format.h>
+#include <json/reader.h>
+#include <json/writer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "api/error.h"
+
+namespace lodbench::report {
+
+namespace {
+
+const Json::Value& member(const Json::Value& object, const char* key, const std::string& where) {
+    if (!object.isObject() || !object.isMember(key)) {
+        throw InputError(fmt::format("{}: '{}' is missing; the file is damaged", where, key));
+    }
+    return object[key];
+}
+
+}  // namespace
+
+Json::Value parse_json(std::string_view text, const std::string& where) {
+    Json::CharReaderBuilder builder;
+    Json::CharReaderBuilder::strictMode(&builder.settings_);
+    builder["stackLimit"] = 64;
+    Json::Value value;
+    std::string errors;
+    bool good = false;
+    try {
+        const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
+        good = reader->parse(text.data(), text.data() + text.size(), &value, &errors);
+    } catch (const Json::Exception& error) {  // the stack limit throws
+        errors = error.what();
+    }
+    if (!good) {
+        std::ranges::replace(errors, '\n', ' ');
+        throw InputError(fmt::format("{}: this is not JSON: {}", where, errors));
+    }
+    return value;
+}
+
+std::string to_text(const Json::Value& value, bool indented) {
+    Json::StreamWriterBuilder builder;
+    builder["indentation"] = indented ? "  " : "";
+    builder["precision"] = 15;  // 0.1 stays 0.1
+    builder["emitUTF8"] = true;
+    return Json::writeString(builder, value);
+}
+
+Json::Value number(std::optional<double> value) {
+    if (!value || !std::isfinite(*value)) return Json::Value::null;
+    return *value;
+}
+
+std::string get_string(const Json::Value& object, const char* key, const std::string& where) {
+    const Json::Value& value = member(object, key, where);
+    if (!value.isString()) throw InputError(fmt::format("{}: '{}' is no text", where, key));
+    return value.asString();
+}
+
+double get_number(const Json::Value& object, const char* key, const std::string& where) {
+    const Json::Value& value = member(object, key, where);
+    if (!value.isNumeric()) throw InputError(fmt::format("{}: '{}' is no number", where, key));
+    return value.asDouble();
+}
+
+const Json::Value& get_array(const Json::Value& object, const char* key, const std::string& where) {
+    const Json::Value& value = member(object, key, where);
+    if (!value.isArray()) throw InputError(fmt::format("{}: '{}' is no list", where, key));
+    return value;
+}
+
+}  // namespace lodbench::report

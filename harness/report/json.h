@@ -1,0 +1,27 @@
+#pragma once
+// JSON in and out, in one style.
+
+#include <json/value.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lodbench::report {
+
+/// Strict JSON, at most 64 levels deep. Throws InputError as "WHERE: ...".
+[[nodiscard]] Json::Value parse_json(std::string_view text, const std::string& where);
+
+/// On one line, or indented by two blanks. Numbers that are not finite become null: JSON has none.
+[[nodiscard]] std::string to_text(const Json::Value& value, bool indented = false);
+
+/// Null for an absent or non-finite number.
+[[nodiscard]] Json::Value number(std::optional<double> value);
+
+/// Readers of what was parsed: throw InputError naming `where` and the key for a wrong or missing type.
+[[nodiscard]] std::string get_string(const Json::Value& object, const char* key, const std::string& where);
+[[nodiscard]] double get_number(const Json::Value& object, const char* key, const std::string& where);
+[[nodiscard]] const Json::Value& get_array(const Json::Value& object, const char* key,
+                                           const std::string& where);
+
+}  // namespace lodbench::report

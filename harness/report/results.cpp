@@ -1,0 +1,119 @@
+#include "report/results.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "api/error.h"
+
+namespace lodbench::report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const char* what, const fs::path& path, int error) {
+    throw EnvironmentError(fmt::format("cannot {} {}: {}; make room there, or choose another folder with --out",
+                                       what, path.string(), std::strerror(error)));
+}
+
+/// An open file that is closed on the way out.
+class File {
+public:
+    File(const fs::path& path, int flags) : number_(open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
+    ~File() {
+        if (number_ >= 0) ::close(number_);
+    }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    [[nodiscard]] int number() const { return number_; }
+    [[nodiscard]] bool good() const { return number_ >= 0; }
+    /// Some file systems refuse only here.
+    [[nodiscard]] bool close() { return ::close(std::exchange(number_, -1)) == 0; }
+
+private:
+    int number_;
+};
+
+/// 0, or the error number.
+int write_and_sync(int number, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t count = ::write(number, text.data(), text.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return errno;
+        if (count == 0) return ENOSPC;
+        text.remove_prefix(std::size_t(count));
+    }
+    // EINVAL: what is no regular file (a pipe, /dev/full) cannot be synced.
+    return fsync(number) == 0 || errno == EINVAL ? 0 : errno;
+}
+
+}  // namespace
+
+void write_whole(const fs::path& path, std::string_view text) {
+    const fs::path temporary = path.parent_path() / ("." + path.filename().string() + ".tmp");
+    int error = 0;
+    {
+        File file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+        if (!file.good()) fail("write", path, errno);
+        error = write_and_sync(file.number(), text);
+        if (!file.close() && error == 0) error = errno;
+    }
+    if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
+    if (error != 0) {
+        unlink(temporary.c_str());
+        fail("write", path, error);
+    }
+}
+
+void append_line(const fs::path& path, std::string_view line) {
+    if (line.find('\n') != line.npos) {
+        throw ContractError("append_line: expected one line, found a newline in it");
+    }
+    const File file(path, O_WRONLY | O_CREAT | O_APPEND);
+    if (!file.good()) fail("write", path, errno);
+    struct stat before {};
+    if (fstat(file.number(), &before) != 0) fail("read the size of", path, errno);
+    std::string text(line);
+    text += '\n';
+    if (const int error = write_and_sync(file.number(), text); error != 0) {
+        if (ftruncate(file.number(), before.st_size) != 0) fail("cut back", path, errno);
+        fail("append to", path, error);
+    }
+}
+
+std::string read_text(const fs::path& path) {
+    const File file(path, O_RDONLY);
+    if (!file.good()) fail("read", path, errno);
+    std::string text;
+    char block[65536];
+    for (;;) {
+        const ssize_t count = ::read(file.number(), block, sizeof block);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail("read", path, errno);
+        if (count == 0) return text;
+        text.append(block, std::size_t(count));
+    }
+}
+
+std::vector<std::string> read_lines(const fs::path& path, bool repair) {
+    std::vector<std::string> lines;
+    if (!fs::exists(path)) return lines;
+    const std::string text = read_text(path);
+    std::size_t begin = 0;
+    for (std::size_t end = 0; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
+        lines.push_back(text.substr(begin, end - begin));
+    }
+    if (repair && begin != text.size() && truncate(path.c_str(), off_t(begin)) != 0) {
+        fail("cut back", path, errno);
+    }
+    return lines;
+}
+
+}  // namespace lodbench::report

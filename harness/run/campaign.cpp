@@ -1,0 +1,227 @@
+#include "run/campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <set>
+
+#include "api/error.h"
+#include "report/json.h"
+#include "report/results.h"
+#include "report/table.h"
+#include "run/cell_record.h"
+#include "run/context.h"
+#include "run/run_folder.h"
+#include "run/supervisor.h"
+
+namespace lodbench::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
+    Json::Value json = Json::arrayValue;
+    for (const PluginListing& plugin : plugins) {
+        Json::Value entry;
+        entry["path"] = plugin.path.string();
+        entry["refusal"] = plugin.refusal.empty() ? Json::Value::null : Json::Value(plugin.refusal);
+        entry["methods"] = Json::arrayValue;
+        for (const MethodInfo& method : plugin.methods) {
+            Json::Value json_method;
+            json_method["id"] = method.id;
+            json_method["version"] = method.version;
+            json_method["title"] = method.title;
+            json_method["citation"] = method.citation;
+            entry["methods"].append(json_method);
+        }
+        json.append(entry);
+    }
+    return json;
+}
+
+Json::Value run_context(const RunRequest& request, const Plan& plan,
+                        const std::vector<PluginListing>& plugins) {
+    Json::Value run = machine_context();
+    run["command_line"] = request.command_line;
+    run["seed"] = Json::UInt64(plan.seed);
+    run["device_asked"] = request.device;
+    run["gl"] = Json::Value::null;
+    run["scenarios"] = Json::arrayValue;
+    for (std::size_t i = 0; i < plan.scenarios.size(); ++i) {
+        const scenario::Scenario& scenario = plan.scenarios[i];
+        Json::Value json;
+        json["name"] = scenario.name;
+        json["base"] = plan.bases[i].string();
+        json["text"] = scenario.text;
+        json["frames"] = scenario.frames;
+        json["warmup_frames"] = scenario.warmup_frames;
+        json["width"] = scenario.viewport.width;
+        json["height"] = scenario.viewport.height;
+        json["rate_hz"] = scenario.rate_hz;
+        json["repetitions"] = scenario.repetitions;
+        run["scenarios"].append(json);
+    }
+    run["plugins"] = listings_to_json(plugins);
+    run["warnings"] = Json::arrayValue;
+    for (const std::string& warning : plan.warnings) run["warnings"].append(warning);
+    run["cells"] = plan_to_json(plan);
+    return run;
+}
+
+/// A campaign under way.
+class Campaign {
+public:
+    Campaign(const RunRequest& request, const fs::path& program, CampaignObserver& observer)
+        : request_(request), program_(program), observer_(observer), folder_(fs::absolute(request.out)) {
+        outcome_.out = folder_.path();
+        const bool known = fs::exists(folder_.path() / "run.json");
+        if (folder_.holds_a_run() && !request.resume) {
+            throw InputError(fmt::format("{}: this folder already holds a run; add --resume to finish it, or "
+                                         "choose another with --out", folder_.path().string()));
+        }
+        if (known) {
+            take_up();
+        } else {
+            start();
+        }
+        outcome_.seed = plan_.seed;
+        for (const std::string& warning : outcome_.warnings) observer_.warned(warning);
+    }
+
+    CampaignOutcome fly() {
+        try {
+            for (std::size_t i = 0; i < plan_.cells.size(); ++i) {
+                if (!finished_.contains(plan_.cells[i].spec.id)) fly_cell_at(i);
+            }
+            write_summary();
+        } catch (const EnvironmentError& error) {
+            outcome_.error = error.what();
+        }
+        return std::move(outcome_);
+    }
+
+private:
+    void start() {
+        const std::vector<PluginListing> plugins = list_plugins(plugin_folders(request_.plugin_dirs));
+        plan_ = make_plan(request_, plugins);
+        outcome_.warnings = plan_.warnings;
+        for (const scenario::Scenario& scenario : plan_.scenarios) {
+            report::write_whole(scenario_file(scenario.name), scenario.text);
+        }
+        run_ = run_context(request_, plan_, plugins);
+        write_run();
+    }
+
+    void take_up() {
+        const fs::path file = folder_.path() / "run.json";
+        run_ = report::parse_json(report::read_text(file), file.string());
+        if (!run_.isObject() || run_["schema_version"] != report::kSchemaVersion) {
+            throw InputError(fmt::format("{}: schema_version is {}, expected {}; resume it with the lodbench "
+                                         "that began it", file.string(),
+                                         run_.isObject() ? report::to_text(run_["schema_version"]) : "absent",
+                                         report::kSchemaVersion));
+        }
+        try {
+            plan_ = plan_from_json(run_, folder_.path());
+        } catch (const Json::Exception& error) {
+            throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+        }
+        for (const Json::Value& warning : run_["warnings"]) outcome_.warnings.push_back(warning.asString());
+        outcome_.cells = folder_.repair();
+        for (const Json::Value& cell : outcome_.cells) finished_.insert(cell["cell"].asString());
+    }
+
+    void fly_cell_at(std::size_t index) {
+        PlannedCell& cell = plan_.cells[index];
+        const std::size_t which = scenario_index(cell.scenario);
+        const scenario::Scenario& scenario = plan_.scenarios[which];
+        cell.spec.out = folder_.path();
+        cell.spec.scenario_file = scenario_file(cell.scenario);
+        cell.spec.scenario_base = plan_.bases[which];
+        const CellLimits limits{scenario.cell_time_limit_s, scenario.frame_time_limit_s,
+                                scenario.memory_limit_bytes};
+        const CellResult result = run_cell(
+            cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
+            [&](int done, int total) {
+                observer_.cell_progress(cell, index, plan_.cells.size(),
+                                        total > 0 ? double(done) / double(total) : 0.0);
+            });
+        const Json::Value record =
+            cell_record(cell.spec, cell.scenario, cell.params, result, scenario.measure.budget_ms);
+        folder_.add_cell(cell.spec.id, record, frames_csv(result.frames));
+        finished_.insert(cell.spec.id);
+        outcome_.cells.push_back(record);
+        if (run_["gl"].isNull() && !result.gl_renderer.empty()) {
+            run_["gl"] = gl_context(result);
+            write_run();
+        }
+        observer_.cell_finished(cell, index, plan_.cells.size(), record);
+    }
+
+    void write_run() { report::write_whole(folder_.path() / "run.json", report::to_text(run_, true) + "\n"); }
+
+    void write_summary() {
+        const auto line = [this](const char* title, const Json::Value& value) {
+            return value.isNull() ? std::string() : fmt::format("- {}: {}\n", title, value.asString());
+        };
+        std::string text = "# lodbench run\n\n";
+        text += line("lodbench", run_["tool_version"]) + line("commit", run_["commit"]);
+        text += line("command", run_["command_line"]) + line("system", run_["os"]) + line("CPU", run_["cpu"]);
+        if (run_["gl"].isObject()) {
+            text += line("renderer", run_["gl"]["renderer"]) + line("OpenGL", run_["gl"]["version"]);
+            text += line("timer", run_["gl"]["timer_verdict"]);
+        }
+        text += fmt::format("- seed: {}\n\n", plan_.seed);
+        text += report::markdown_table(report::table_rows(outcome_.cells, plan_.seed));
+        if (!outcome_.warnings.empty()) text += "\n## Warnings\n\n";
+        for (const std::string& warning : outcome_.warnings) text += fmt::format("- {}\n", warning);
+        report::write_whole(folder_.path() / "summary.md", text);
+    }
+
+    [[nodiscard]] fs::path scenario_file(const std::string& name) const {
+        return folder_.path() / "scenarios" / (name + ".toml");
+    }
+
+    [[nodiscard]] std::size_t scenario_index(const std::string& name) const {
+        const auto found = std::ranges::find(plan_.scenarios, name, &scenario::Scenario::name);
+        if (found == plan_.scenarios.end()) {
+            throw EnvironmentError(fmt::format("{}: scenario '{}' of a cell is not in run.json",
+                                               folder_.path().string(), name));
+        }
+        return std::size_t(found - plan_.scenarios.begin());
+    }
+
+    const RunRequest& request_;
+    const fs::path& program_;
+    CampaignObserver& observer_;
+    RunFolder folder_;
+    Plan plan_;
+    Json::Value run_;
+    std::set<std::string> finished_;
+    CampaignOutcome outcome_;
+};
+
+}  // namespace
+
+int CampaignOutcome::exit_status() const {
+    constexpr int kSomeFailed = 3;
+    constexpr int kNothingMeasured = 4;
+    const auto has_status = [this](std::initializer_list<const char*> wanted) {
+        return std::ranges::any_of(cells, [&](const Json::Value& cell) {
+            return std::ranges::any_of(wanted, [&](const char* status) { return cell["status"] == status; });
+        });
+    };
+    if (!has_status({"ok"})) return kNothingMeasured;
+    if (!error.empty() || has_status({"failed", "crashed", "timeout"})) return kSomeFailed;
+    return 0;
+}
+
+CampaignOutcome run_campaign(const RunRequest& request, const fs::path& program,
+                             CampaignObserver& observer) {
+    return Campaign(request, program, observer).fly();
+}
+
+}  // namespace lodbench::run

@@ -1,0 +1,355 @@
+#include "run/cell_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "report/json.h"
+
+namespace lodbench::run {
+
+namespace {
+
+using report::number;
+
+Json::Value to_json(const measure::TimeSummary& summary) {
+    Json::Value json;
+    json["mean"] = number(summary.mean);
+    json["median"] = number(summary.median);
+    json["p90"] = number(summary.p90);
+    json["p95"] = number(summary.p95);
+    json["p99"] = number(summary.p99);
+    json["p999"] = number(summary.p999);
+    json["min"] = number(summary.min);
+    json["max"] = number(summary.max);
+    json["low1"] = number(summary.low1);
+    return json;
+}
+
+/// Summary of one column of the frames; null unless every frame has it.
+template <typename Get>
+Json::Value time_summary(const std::vector<FrameRecord>& frames, Get get) {
+    std::vector<double> values;
+    for (const FrameRecord& frame : frames) {
+        const std::optional<double> value = get(frame);
+        if (!value) return Json::Value::null;
+        values.push_back(*value);
+    }
+    if (values.empty()) return Json::Value::null;
+    return to_json(measure::summarize_times(values));
+}
+
+/// Mean, least and greatest of a count over those frames that have it; null when none has.
+Json::Value count_summary(const std::vector<FrameRecord>& frames,
+                          std::optional<std::uint64_t> FrameRecord::*count) {
+    double sum = 0;
+    std::size_t present = 0;
+    std::uint64_t least = UINT64_MAX;
+    std::uint64_t greatest = 0;
+    for (const FrameRecord& frame : frames) {
+        if (!(frame.*count)) continue;
+        const std::uint64_t value = *(frame.*count);
+        sum += double(value);
+        least = std::min(least, value);
+        greatest = std::max(greatest, value);
+        ++present;
+    }
+    if (present == 0) return Json::Value::null;
+    Json::Value json;
+    json["mean"] = sum / double(present);
+    json["min"] = Json::UInt64(least);
+    json["max"] = Json::UInt64(greatest);
+    return json;
+}
+
+Json::Value count(std::optional<std::uint64_t> value) {
+    return value ? Json::Value(Json::UInt64(*value)) : Json::Value::null;
+}
+
+Json::Value texts(const std::vector<std::string>& values) {
+    Json::Value json = Json::arrayValue;
+    for (const std::string& value : values) json.append(value);
+    return json;
+}
+
+/// Null for what the child never came to say.
+Json::Value text_or_null(const std::string& text) {
+    return text.empty() ? Json::Value::null : Json::Value(text);
+}
+
+// A frame as an array, in this order: the columns of the CSV.
+constexpr const char* kFrameColumns =
+    "frame,wall_ms,select_ms,submit_ms,cpu_ms,gpu_ms,triangles,triangles_nondegenerate,draw_calls,"
+    "uploaded_bytes";
+constexpr Json::ArrayIndex kFrameColumnCount = 10;
+
+Json::Value to_json(const FrameRecord& frame) {
+    Json::Value row = Json::arrayValue;
+    row.append(frame.frame);
+    for (const double value : {frame.wall_ms, frame.select_ms, frame.submit_ms, frame.cpu_ms}) {
+        row.append(number(value));
+    }
+    row.append(number(frame.gpu_ms));
+    for (const auto& value : {frame.triangles, frame.triangles_nondegenerate, frame.draw_calls,
+                              frame.uploaded_bytes}) {
+        row.append(count(value));
+    }
+    return row;
+}
+
+std::optional<std::uint64_t> read_count(const Json::Value& value) {
+    return value.isNull() ? std::nullopt : std::optional<std::uint64_t>(value.asUInt64());
+}
+
+std::optional<double> read_number(const Json::Value& value) {
+    return value.isNull() ? std::nullopt : std::optional(value.asDouble());
+}
+
+FrameRecord read_frame(const Json::Value& row, const std::string& where) {
+    if (!row.isArray() || row.size() != kFrameColumnCount) {
+        throw InputError(where + ": a frame does not have 10 columns");
+    }
+    FrameRecord frame;
+    frame.frame = row[0].asInt();
+    frame.wall_ms = row[1].asDouble();
+    frame.select_ms = row[2].asDouble();
+    frame.submit_ms = row[3].asDouble();
+    frame.cpu_ms = row[4].asDouble();
+    frame.gpu_ms = read_number(row[5]);
+    frame.triangles = read_count(row[6]);
+    frame.triangles_nondegenerate = read_count(row[7]);
+    frame.draw_calls = read_count(row[8]);
+    frame.uploaded_bytes = read_count(row[9]);
+    return frame;
+}
+
+constexpr std::array kStatusNames = {"ok", "skipped", "failed", "crashed", "timeout"};
+
+// Later work measures these; until then they are there and null.
+constexpr std::array kNotYetMeasured = {
+    "screen_error_px", "visible_error_px", "pixel_error_px", "pixel_error_realtime_px",
+    "crack_pixels",    "skirt_pixels",     "uncovered_samples", "silhouette_px",
+    "popping_px",      "height_rmse_m",    "image",             "bound_honesty"};
+
+/// JsonCpp throws its own errors for wrong types.
+template <typename Body>
+auto checked(const std::string& where, Body body) {
+    try {
+        return body();
+    } catch (const Json::Exception& error) {
+        throw InputError(fmt::format("{}: {}", where, error.what()));
+    }
+}
+
+}  // namespace
+
+const char* name_of(CellStatus status) {
+    return kStatusNames.at(std::size_t(status));
+}
+
+Json::Value to_json(const Params& params) {
+    Json::Value json = Json::objectValue;
+    for (const auto& [name, value] : params.values()) {
+        if (const bool* flag = std::get_if<bool>(&value)) json[name] = *flag;
+        if (const auto* integer = std::get_if<std::int64_t>(&value)) json[name] = Json::Int64(*integer);
+        if (const double* real = std::get_if<double>(&value)) json[name] = number(*real);
+        if (const auto* choice = std::get_if<std::string>(&value)) json[name] = *choice;
+    }
+    return json;
+}
+
+std::string write_spec(const CellSpec& spec) {
+    Json::Value json;
+    json["id"] = spec.id;
+    json["scenario_file"] = spec.scenario_file.string();
+    json["scenario_base"] = spec.scenario_base.string();
+    Json::Value& overrides = json["overrides"] = Json::objectValue;
+    if (spec.overrides.frames) overrides["frames"] = *spec.overrides.frames;
+    if (spec.overrides.seed) overrides["seed"] = Json::UInt64(*spec.overrides.seed);
+    if (spec.overrides.repetitions) overrides["repetitions"] = *spec.overrides.repetitions;
+    if (spec.overrides.viewport) {
+        overrides["width"] = spec.overrides.viewport->width;
+        overrides["height"] = spec.overrides.viewport->height;
+    }
+    json["method"] = spec.method;
+    json["plugin"] = spec.plugin.string();
+    json["settings"] = Json::arrayValue;
+    for (const auto& [name, value] : spec.settings) {
+        Json::Value pair = Json::arrayValue;
+        pair.append(name);
+        pair.append(value);
+        json["settings"].append(pair);
+    }
+    json["repetition"] = spec.repetition;
+    json["seed"] = Json::UInt64(spec.seed);
+    json["device"] = spec.device;
+    json["out"] = spec.out.string();
+    return report::to_text(json);
+}
+
+CellSpec read_spec(std::string_view text, const std::string& where) {
+    return checked(where, [&] {
+        const Json::Value json = report::parse_json(text, where);
+        CellSpec spec;
+        spec.id = report::get_string(json, "id", where);
+        spec.scenario_file = report::get_string(json, "scenario_file", where);
+        spec.scenario_base = report::get_string(json, "scenario_base", where);
+        const Json::Value& overrides = json["overrides"];
+        if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
+        if (overrides.isMember("seed")) spec.overrides.seed = overrides["seed"].asUInt64();
+        if (overrides.isMember("repetitions")) spec.overrides.repetitions = overrides["repetitions"].asInt();
+        if (overrides.isMember("width")) {
+            spec.overrides.viewport = Viewport{overrides["width"].asInt(), overrides["height"].asInt()};
+        }
+        spec.method = report::get_string(json, "method", where);
+        spec.plugin = report::get_string(json, "plugin", where);
+        for (const Json::Value& pair : report::get_array(json, "settings", where)) {
+            spec.settings.emplace_back(pair[0].asString(), pair[1].asString());
+        }
+        spec.repetition = json["repetition"].asInt();
+        spec.seed = json["seed"].asUInt64();
+        spec.device = report::get_string(json, "device", where);
+        spec.out = report::get_string(json, "out", where);
+        return spec;
+    });
+}
+
+std::string write_result(const CellResult& result) {
+    Json::Value json;
+    json["status"] = name_of(result.status);
+    json["reason"] = result.reason;
+    json["frames"] = Json::arrayValue;
+    for (const FrameRecord& frame : result.frames) json["frames"].append(to_json(frame));
+    json["prepare_s"] = result.prepare_s;
+    json["prepare_cpu_s"] = result.prepare_cpu_s;
+    json["upload_s"] = result.upload_s;
+    json["gpu_bytes"] = count(result.gpu_bytes);
+    json["peak_rss_bytes"] = count(result.peak_rss_bytes);
+    json["samples_served"] = Json::UInt64(result.samples_served);
+    json["counters"] = Json::arrayValue;
+    for (const auto& [name, value] : result.counters) {
+        Json::Value pair = Json::arrayValue;
+        pair.append(name);
+        pair.append(number(value));
+        json["counters"].append(pair);
+    }
+    json["depth_hash"] = result.depth_hash;
+    json["terrain_name"] = result.terrain_name;
+    json["terrain_checksum"] = result.terrain_checksum;
+    json["claimed_px"] = number(result.claimed_px);
+    json["warnings"] = texts(result.warnings);
+    json["gl_vendor"] = result.gl_vendor;
+    json["gl_renderer"] = result.gl_renderer;
+    json["gl_version"] = result.gl_version;
+    json["device_description"] = result.device_description;
+    json["software"] = result.software;
+    json["timer_verdict"] = result.timer_verdict;
+    return report::to_text(json);
+}
+
+CellResult read_result(std::string_view text, const std::string& where) {
+    return checked(where, [&] {
+        const Json::Value json = report::parse_json(text, where);
+        CellResult result;
+        const std::string status = report::get_string(json, "status", where);
+        const auto* const name = std::ranges::find(kStatusNames, status);
+        if (name == kStatusNames.end()) {
+            throw InputError(fmt::format("{}: unknown status '{}'", where, status));
+        }
+        result.status = CellStatus(name - kStatusNames.begin());
+        result.reason = report::get_string(json, "reason", where);
+        for (const Json::Value& row : report::get_array(json, "frames", where)) {
+            result.frames.push_back(read_frame(row, where));
+        }
+        result.prepare_s = report::get_number(json, "prepare_s", where);
+        result.prepare_cpu_s = report::get_number(json, "prepare_cpu_s", where);
+        result.upload_s = report::get_number(json, "upload_s", where);
+        result.gpu_bytes = read_count(json["gpu_bytes"]);
+        result.peak_rss_bytes = read_count(json["peak_rss_bytes"]);
+        result.samples_served = json["samples_served"].asUInt64();
+        for (const Json::Value& pair : report::get_array(json, "counters", where)) {
+            // A figure that is not finite has no number in JSON.
+            result.counters.emplace_back(pair[0].asString(), pair[1].isNull() ? NAN : pair[1].asDouble());
+        }
+        result.depth_hash = report::get_string(json, "depth_hash", where);
+        result.terrain_name = report::get_string(json, "terrain_name", where);
+        result.terrain_checksum = report::get_string(json, "terrain_checksum", where);
+        result.claimed_px = read_number(json["claimed_px"]);
+        for (const Json::Value& warning : report::get_array(json, "warnings", where)) {
+            result.warnings.push_back(warning.asString());
+        }
+        result.gl_vendor = report::get_string(json, "gl_vendor", where);
+        result.gl_renderer = report::get_string(json, "gl_renderer", where);
+        result.gl_version = report::get_string(json, "gl_version", where);
+        result.device_description = report::get_string(json, "device_description", where);
+        result.software = json["software"].asBool();
+        result.timer_verdict = report::get_string(json, "timer_verdict", where);
+        return result;
+    });
+}
+
+Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const Params& params,
+                        const CellResult& result, double budget_ms) {
+    Json::Value json;
+    json["cell"] = spec.id;
+    json["method"] = spec.method;
+    json["scenario"] = scenario;
+    json["params"] = to_json(params);
+    json["repetition"] = spec.repetition;
+    json["seed"] = Json::UInt64(spec.seed);
+    json["status"] = name_of(result.status);
+    json["reason"] = text_or_null(result.reason);
+    for (const char* name : kNotYetMeasured) json[name] = Json::Value::null;
+
+    const std::vector<FrameRecord>& frames = result.frames;
+    std::vector<double> wall;
+    for (const FrameRecord& frame : frames) wall.push_back(frame.wall_ms);
+    json["frames"] = frames.empty() ? Json::Value::null : Json::Value(Json::UInt64(frames.size()));
+    json["fps"] = number(measure::frames_per_second(wall));
+    json["jank_ms"] = wall.empty() ? Json::Value::null : number(measure::jank_sum(wall, budget_ms));
+    using Frame = const FrameRecord&;
+    using Value = std::optional<double>;
+    json["frame_ms"] = time_summary(frames, [](Frame f) { return Value(f.wall_ms); });
+    json["select_ms"] = time_summary(frames, [](Frame f) { return Value(f.select_ms); });
+    json["submit_ms"] = time_summary(frames, [](Frame f) { return Value(f.submit_ms); });
+    json["gpu_ms"] = time_summary(frames, [](Frame f) { return f.gpu_ms; });
+    json["cpu_ms"] = time_summary(frames, [](Frame f) { return Value(f.cpu_ms); });
+    json["triangles"] = count_summary(frames, &FrameRecord::triangles);
+    json["triangles_nondegenerate"] = count_summary(frames, &FrameRecord::triangles_nondegenerate);
+    json["draw_calls"] = count_summary(frames, &FrameRecord::draw_calls);
+    json["uploaded_bytes"] = count_summary(frames, &FrameRecord::uploaded_bytes);
+
+    // A cell that did not come to its end has no times of its steps either.
+    const bool measured = result.status == CellStatus::ok;
+    json["prepare_s"] = measured ? number(result.prepare_s) : Json::Value::null;
+    json["prepare_cpu_s"] = measured ? number(result.prepare_cpu_s) : Json::Value::null;
+    json["prepare_cached"] = measured ? Json::Value(false) : Json::Value::null;
+    json["upload_s"] = measured ? number(result.upload_s) : Json::Value::null;
+    json["samples_served"] = measured ? Json::Value(Json::UInt64(result.samples_served)) : Json::Value::null;
+    json["gpu_bytes"] = count(result.gpu_bytes);
+    json["peak_rss_bytes"] = count(result.peak_rss_bytes);
+    json["counters"] = Json::objectValue;
+    for (const auto& [name, value] : result.counters) json["counters"][name] = number(value);
+    json["claimed_px"] = number(result.claimed_px);
+    json["depth_hash"] = text_or_null(result.depth_hash);
+    json["terrain"] = text_or_null(result.terrain_name);
+    json["terrain_checksum"] = text_or_null(result.terrain_checksum);
+    json["timer_verdict"] = text_or_null(result.timer_verdict);
+    json["warnings"] = texts(result.warnings);
+    return json;
+}
+
+std::string frames_csv(const std::vector<FrameRecord>& frames) {
+    std::string csv = std::string(kFrameColumns) + "\n";
+    const auto field = [](const auto& value) { return value ? fmt::format("{}", *value) : std::string(); };
+    for (const FrameRecord& f : frames) {
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", f.frame, f.wall_ms, f.select_ms, f.submit_ms,
+                           f.cpu_ms, field(f.gpu_ms), field(f.triangles), field(f.triangles_nondegenerate),
+                           field(f.draw_calls), field(f.uploaded_bytes));
+    }
+    return csv;
+}
+
+}  // namespace lodbench::run

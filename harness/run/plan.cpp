@@ -1,0 +1,289 @@
+#include "run/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "api/error.h"
+#include "report/json.h"
+#include "report/results.h"
+#include "run/cell_record.h"
+#include "run/locations.h"
+
+namespace lodbench::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014; its finaliser by Stafford.
+class SplitMix64 {
+public:
+    explicit SplitMix64(std::uint64_t seed) : state_(seed) {}
+    std::uint64_t next() {
+        std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+        return z ^ (z >> 31);
+    }
+    /// In [0, bound), every value equally likely: the uneven rest of 2^64 is thrown away.
+    std::uint64_t below(std::uint64_t bound) {
+        const std::uint64_t rest = (0 - bound) % bound;
+        std::uint64_t value = next();
+        while (value < rest) value = next();
+        return value % bound;
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+std::vector<std::string> split_values(const std::string& text) {
+    std::vector<std::string> values(1);
+    for (const char c : text) {
+        if (c == ',') {
+            values.emplace_back();
+        } else {
+            values.back() += c;
+        }
+    }
+    return values;
+}
+
+struct CommandSetting {
+    std::string method, parameter;
+    std::vector<std::string> values;
+    std::string where;
+};
+
+CommandSetting read_setting(const std::string& text) {
+    const std::size_t dot = text.find('.');
+    const std::size_t equals = text.find('=');
+    if (dot == text.npos || equals == text.npos || equals < dot || dot == 0 || equals == dot + 1 ||
+        equals + 1 == text.size()) {
+        throw InputError(fmt::format("--set {}: expected METHOD.PARAMETER=VALUE[,VALUE...]", text));
+    }
+    return {text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
+            split_values(text.substr(equals + 1)), "--set " + text};
+}
+
+std::map<std::string, MethodInfo> methods_of(const std::vector<PluginListing>& plugins) {
+    std::map<std::string, MethodInfo> methods;
+    for (const PluginListing& plugin : plugins) {
+        for (const MethodInfo& method : plugin.methods) methods.emplace(method.id, method);
+    }
+    return methods;
+}
+
+const MethodInfo& find_method(const std::map<std::string, MethodInfo>& methods, const std::string& id,
+                              const std::string& where, const std::vector<PluginListing>& plugins) {
+    if (const auto found = methods.find(id); found != methods.end()) return found->second;
+    std::vector<std::string> known;
+    for (const auto& [name, info] : methods) known.push_back(name);
+    std::string message =
+        fmt::format("{}: no method '{}' was found; known: {}", where, id,
+                    known.empty() ? std::string("none") : fmt::format("{}", fmt::join(known, ", ")));
+    for (const PluginListing& plugin : plugins) {
+        if (!plugin.refusal.empty()) message += "; " + plugin.refusal;
+    }
+    throw InputError(message);
+}
+
+/// Every combination of one value for each parameter.
+std::vector<Settings> combinations(const scenario::MethodRequest& request) {
+    std::vector<Settings> result(1);
+    for (const auto& [name, values] : request.settings) {
+        std::vector<Settings> longer;
+        for (const Settings& settings : result) {
+            for (const std::string& value : values) {
+                longer.push_back(settings);
+                longer.back().emplace_back(name, value);
+            }
+        }
+        result = std::move(longer);
+    }
+    return result;
+}
+
+/// Safe as a file name.
+std::string cell_id(const std::string& method, const Settings& settings, const std::string& scenario,
+                    int repetition) {
+    std::string id = method;
+    for (const auto& [name, value] : settings) id += fmt::format("__{}={}", name, value);
+    id += fmt::format("__{}__r{}", scenario, repetition);
+    for (char& c : id) {
+        const bool safe = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          std::string_view("._=+-").find(c) != std::string_view::npos;
+        if (!safe) c = '-';
+    }
+    return id;
+}
+
+/// The requests of one scenario, with what the command line says in place of what the file says.
+std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scenario,
+                                                 const std::vector<std::string>& chosen,
+                                                 const std::vector<CommandSetting>& command,
+                                                 const std::map<std::string, MethodInfo>& methods) {
+    std::vector<scenario::MethodRequest> requests;
+    if (!chosen.empty()) {
+        for (const std::string& id : chosen) {
+            const std::size_t before = requests.size();
+            std::ranges::copy_if(scenario.methods, std::back_inserter(requests),
+                                 [&](const auto& request) { return request.id == id; });
+            if (requests.size() == before) requests.push_back({id, {}, "--method " + id});
+        }
+    } else if (!scenario.methods.empty()) {
+        requests = scenario.methods;
+    } else {
+        for (const auto& [id, info] : methods) requests.push_back({id, {}, "scenario " + scenario.name});
+    }
+    for (scenario::MethodRequest& request : requests) {
+        for (const CommandSetting& setting : command) {
+            if (setting.method != request.id) continue;
+            std::erase_if(request.settings, [&](const auto& s) { return s.first == setting.parameter; });
+            request.settings.emplace_back(setting.parameter, setting.values);
+            request.where = setting.where;
+        }
+    }
+    return requests;
+}
+
+}  // namespace
+
+void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {
+    std::ranges::stable_sort(cells, {}, [](const PlannedCell& cell) { return cell.spec.repetition; });
+    SplitMix64 random(seed);
+    for (std::size_t begin = 0; begin < cells.size();) {
+        std::size_t end = begin;
+        while (end < cells.size() && cells[end].spec.repetition == cells[begin].spec.repetition) ++end;
+        // Fisher-Yates; std::shuffle differs between standard libraries.
+        for (std::size_t i = end - 1; i > begin; --i) {
+            std::swap(cells[i], cells[begin + random.below(i - begin + 1)]);
+        }
+        begin = end;
+    }
+}
+
+Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plugins) {
+    const std::map<std::string, MethodInfo> methods = methods_of(plugins);
+    std::vector<CommandSetting> command;
+    for (const std::string& text : request.settings) command.push_back(read_setting(text));
+    std::vector<std::string> chosen = request.methods;
+    for (const std::string& id : chosen) find_method(methods, id, "--method " + id, plugins);
+
+    Plan plan;
+    for (const PluginListing& plugin : plugins) {
+        if (!plugin.refusal.empty()) plan.warnings.push_back(plugin.refusal);
+    }
+    std::vector<fs::path> files = request.scenarios;
+    if (files.empty()) files.push_back(demo_scenario());
+    std::set<std::string> used;  // methods that fly somewhere
+    std::set<std::string> ids;
+    for (const fs::path& file : files) {
+        scenario::Scenario scenario = scenario::load_scenario(file);
+        scenario::apply(request.overrides, scenario);
+        if (std::ranges::find(plan.scenarios, scenario.name, &scenario::Scenario::name) !=
+            plan.scenarios.end()) {
+            throw InputError(fmt::format("{}: a scenario named '{}' is already in this run; give one another "
+                                         "name", file.string(), scenario.name));
+        }
+        const fs::path base = fs::absolute(file).parent_path();
+        for (const auto& wanted : requests_of(scenario, chosen, command, methods)) {
+            const MethodInfo& method = find_method(methods, wanted.id, wanted.where, plugins);
+            used.insert(method.id);
+            for (const Settings& settings : combinations(wanted)) {
+                const Params params = make_params(method, settings, wanted.where);
+                for (int repetition = 0; repetition < scenario.repetitions; ++repetition) {
+                    CellSpec spec;
+                    spec.id = cell_id(method.id, settings, scenario.name, repetition);
+                    if (!ids.insert(spec.id).second) {
+                        if (repetition == 0) plan.warnings.push_back(spec.id + " is asked for twice and flown once");
+                        continue;
+                    }
+                    spec.overrides = request.overrides;
+                    spec.method = method.id;
+                    spec.plugin = method.plugin;
+                    spec.settings = settings;
+                    spec.repetition = repetition;
+                    spec.device = request.device;
+                    plan.cells.push_back({std::move(spec), scenario.name, params});
+                }
+            }
+        }
+        plan.bases.push_back(base);
+        plan.scenarios.push_back(std::move(scenario));
+    }
+    for (const CommandSetting& setting : command) {
+        find_method(methods, setting.method, setting.where, plugins);
+        if (!used.contains(setting.method)) {
+            throw InputError(fmt::format("{}: method '{}' is not flown in this run; add --method {}",
+                                         setting.where, setting.method, setting.method));
+        }
+    }
+    if (plan.cells.empty()) {
+        throw InputError("there is no method to fly: no plugin was found; give --plugin-dir DIR");
+    }
+    plan.seed = request.overrides.seed.value_or(plan.scenarios.front().seed);
+    interleave(plan.cells, plan.seed);
+    SplitMix64 seeds(~plan.seed);
+    for (PlannedCell& cell : plan.cells) cell.spec.seed = seeds.next();
+    return plan;
+}
+
+Json::Value plan_to_json(const Plan& plan) {
+    Json::Value cells = Json::arrayValue;
+    for (const PlannedCell& cell : plan.cells) {
+        Json::Value json = report::parse_json(write_spec(cell.spec), "a cell");
+        // Where the results lie and where from they are read is known by whoever opens the folder.
+        for (const char* key : {"out", "scenario_file", "scenario_base"}) json.removeMember(key);
+        json["scenario"] = cell.scenario;
+        cells.append(json);
+    }
+    return cells;
+}
+
+Plan plan_from_json(const Json::Value& run, const fs::path& out) {
+    const std::string where = (out / "run.json").string();
+    Plan plan;
+    for (const Json::Value& json : report::get_array(run, "scenarios", where)) {
+        const std::string name = report::get_string(json, "name", where);
+        // A damaged file must not send us out of the folder.
+        if (name.empty() || name.find('/') != name.npos) {
+            throw InputError(fmt::format("{}: '{}' is no name of a scenario", where, name));
+        }
+        const fs::path base = report::get_string(json, "base", where);
+        plan.scenarios.push_back(scenario::parse_scenario(
+            report::read_text(out / "scenarios" / (name + ".toml")), base / (name + ".toml")));
+        plan.bases.push_back(base);
+    }
+    std::map<std::string, PluginListing> plugins;
+    for (Json::Value json : report::get_array(run, "cells", where)) {
+        for (const char* key : {"out", "scenario_file", "scenario_base"}) json[key] = "";
+        PlannedCell cell;
+        cell.spec = read_spec(report::to_text(json), where);
+        cell.scenario = report::get_string(json, "scenario", where);
+        const std::string path = cell.spec.plugin.string();
+        if (!plugins.contains(path)) plugins.emplace(path, list_plugin(cell.spec.plugin));
+        const PluginListing& plugin = plugins.at(path);
+        if (!plugin.refusal.empty()) throw InputError("cannot resume: " + plugin.refusal);
+        const auto method = std::ranges::find(plugin.methods, cell.spec.method, &MethodInfo::id);
+        if (method == plugin.methods.end()) {
+            throw InputError(fmt::format("cannot resume: plugin {} no longer holds method '{}'", path,
+                                         cell.spec.method));
+        }
+        cell.params = make_params(*method, cell.spec.settings, where);
+        plan.cells.push_back(std::move(cell));
+    }
+    for (std::size_t i = 0; i < plan.scenarios.size(); ++i) {
+        const auto cell = std::ranges::find(plan.cells, plan.scenarios[i].name, &PlannedCell::scenario);
+        if (cell != plan.cells.end()) scenario::apply(cell->spec.overrides, plan.scenarios[i]);
+    }
+    plan.seed = run["seed"].asUInt64();
+    return plan;
+}
+
+}  // namespace lodbench::run

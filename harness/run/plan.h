@@ -1,0 +1,54 @@
+#pragma once
+// What a campaign will fly: method x swept settings x scenario x repetition, in seeded random order.
+
+#include <json/value.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "run/cell.h"
+#include "scenario/scenario.h"
+
+namespace lodbench::run {
+
+/// What the user asked for.
+struct RunRequest {
+    std::vector<std::filesystem::path> scenarios;  ///< files; empty: the demo
+    std::vector<std::string> methods;              ///< ids; empty: as the scenario says
+    std::vector<std::string> settings;             ///< "METHOD.PARAMETER=VALUE[,VALUE...]"
+    std::filesystem::path out;
+    std::vector<std::filesystem::path> plugin_dirs;
+    scenario::Overrides overrides;
+    std::string device;
+    std::string command_line;
+    bool resume = false;
+};
+
+struct PlannedCell {
+    CellSpec spec;
+    std::string scenario;  ///< its name
+    Params params;         ///< complete
+};
+
+struct Plan {
+    std::vector<scenario::Scenario> scenarios;  ///< overrides applied
+    std::vector<std::filesystem::path> bases;   ///< of each scenario: where its relative files lie
+    std::vector<PlannedCell> cells;             ///< in the order of flight
+    std::uint64_t seed = 1;
+    std::vector<std::string> warnings;
+};
+
+/// Expands a request. Throws InputError, before anything runs, for an unknown method (listing the plugins
+/// that were refused), a setting that does not fit, or two scenarios of one name.
+[[nodiscard]] Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plugins);
+
+/// "cells" of run.json, and the plan again from a results folder; lists each plugin that it names.
+[[nodiscard]] Json::Value plan_to_json(const Plan& plan);
+[[nodiscard]] Plan plan_from_json(const Json::Value& run, const std::filesystem::path& out);
+
+/// Puts the cells into their order: all of repetition 0, then 1, ..., each shuffled. The same order for the
+/// same seed on every machine.
+void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed);
+
+}  // namespace lodbench::run

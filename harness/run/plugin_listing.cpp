@@ -1,0 +1,234 @@
+// Looks for plugins and lists them, each opened in a child process of its own.
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <json/value.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <set>
+
+#include "api/error.h"
+#include "report/json.h"
+#include "run/child_process.h"
+#include "run/loader_log.h"
+#include "run/locations.h"
+#include "run/plugin_library.h"
+
+namespace lodbench::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr rlim_t kOutputLimit = 1 << 20;  // bytes of what a plugin prints while it is listed
+constexpr std::size_t kQuotedOutput = 200;
+
+Json::Value to_json(const ParamInfo& param) {
+    Json::Value json;
+    json["name"] = param.name;
+    json["type"] = int(param.type);
+    json["default"] = param.default_number;
+    json["minimum"] = param.minimum;
+    json["maximum"] = param.maximum;
+    json["default_choice"] = param.default_choice;
+    json["choices"] = Json::arrayValue;
+    for (const std::string& choice : param.choices) json["choices"].append(choice);
+    json["help"] = param.help;
+    return json;
+}
+
+Json::Value to_json(const MethodInfo& method) {
+    Json::Value json;
+    json["id"] = method.id;
+    json["title"] = method.title;
+    json["citation"] = method.citation;
+    json["version"] = method.version;
+    json["capabilities"] = method.capabilities;
+    json["gl_extensions"] = Json::arrayValue;
+    for (const std::string& name : method.gl_extensions) json["gl_extensions"].append(name);
+    json["params"] = Json::arrayValue;
+    for (const ParamInfo& param : method.params) json["params"].append(to_json(param));
+    json["quality_knob"] = method.quality_knob;
+    json["claimed_bound"] = method.claimed_bound;
+    return json;
+}
+
+ParamInfo read_param(const Json::Value& json, const std::string& where) {
+    ParamInfo param;
+    param.name = report::get_string(json, "name", where);
+    param.type = ParamType(int(report::get_number(json, "type", where)));
+    param.default_number = report::get_number(json, "default", where);
+    param.minimum = report::get_number(json, "minimum", where);
+    param.maximum = report::get_number(json, "maximum", where);
+    param.default_choice = report::get_string(json, "default_choice", where);
+    for (const Json::Value& choice : report::get_array(json, "choices", where)) {
+        param.choices.push_back(choice.asString());
+    }
+    param.help = report::get_string(json, "help", where);
+    return param;
+}
+
+MethodInfo read_method(const Json::Value& json, const std::string& where) {
+    MethodInfo method;
+    method.plugin = where;
+    method.id = report::get_string(json, "id", where);
+    method.title = report::get_string(json, "title", where);
+    method.citation = report::get_string(json, "citation", where);
+    method.version = report::get_string(json, "version", where);
+    method.capabilities = std::uint32_t(report::get_number(json, "capabilities", where));
+    for (const Json::Value& name : report::get_array(json, "gl_extensions", where)) {
+        method.gl_extensions.push_back(name.asString());
+    }
+    for (const Json::Value& param : report::get_array(json, "params", where)) {
+        method.params.push_back(read_param(param, where));
+    }
+    method.quality_knob = report::get_string(json, "quality_knob", where);
+    method.claimed_bound = report::get_string(json, "claimed_bound", where);
+    return method;
+}
+
+/// In the child: opens the plugin and writes the listing.
+int tell(const fs::path& plugin, int listing, int output) {
+    // What a plugin prints belongs into no pipe that the user reads; and it may print without end.
+    if (std::getenv("LODBENCH_LOADER_DEBUG") == nullptr) {
+        dup2(output, STDOUT_FILENO);
+        dup2(output, STDERR_FILENO);
+    }
+    const rlimit limit{kOutputLimit, kOutputLimit};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    Json::Value json;
+    json["methods"] = Json::arrayValue;
+    json["refusal"] = "";
+    try {
+        for (const MethodInfo& method : PluginLibrary(plugin).methods()) {
+            json["methods"].append(to_json(method));
+        }
+    } catch (const InputError& error) {
+        json["refusal"] = error.what();
+    }
+    return write_all(listing, report::to_text(json)) ? 0 : 1;
+}
+
+/// The last line that a plugin printed, for the refusal.
+std::string last_words(const FileDescriptor& output) {
+    std::string text = read_all(output);
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+    const std::size_t line = text.find_last_of('\n');
+    if (line != text.npos) text.erase(0, line + 1);
+    std::erase_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+    if (text.size() > kQuotedOutput) text.resize(kQuotedOutput);
+    return text.empty() ? "" : fmt::format(" (its last words: '{}')", text);
+}
+
+void refuse_duplicates(std::vector<PluginListing>& listings) {
+    std::map<std::string, std::vector<PluginListing*>> holders;
+    for (PluginListing& listing : listings) {
+        for (const MethodInfo& method : listing.methods) holders[method.id].push_back(&listing);
+    }
+    for (const auto& [id, plugins] : holders) {
+        if (plugins.size() < 2) continue;
+        for (PluginListing* plugin : plugins) {
+            const auto other = std::ranges::find_if(plugins, [&](auto* p) { return p != plugin; });
+            plugin->refusal = fmt::format(
+                "plugin {} cannot be used: its method id '{}' is also held by {}; remove one of the two",
+                plugin->path.string(), id, (*other)->path.string());
+            loader_log("{}", plugin->refusal);
+        }
+    }
+    for (PluginListing& listing : listings) {
+        if (!listing.refusal.empty()) listing.methods.clear();
+    }
+}
+
+}  // namespace
+
+std::vector<fs::path> plugin_folders(const std::vector<fs::path>& extra) {
+    std::vector<fs::path> folders = extra;
+    if (const char* variable = std::getenv("LODBENCH_PLUGIN_PATH")) {
+        std::string_view rest = variable;
+        while (!rest.empty()) {
+            const std::size_t colon = std::min(rest.find(':'), rest.size());
+            if (colon > 0) folders.emplace_back(rest.substr(0, colon));
+            rest.remove_prefix(std::min(colon + 1, rest.size()));
+        }
+    }
+    folders.push_back(default_plugin_folder());
+    return folders;
+}
+
+PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time_limit) {
+    PluginListing result;
+    result.path = plugin;
+    const auto refuse = [&](const std::string& why) {
+        result.refusal = fmt::format("plugin {} cannot be used: {}", plugin.string(), why);
+        loader_log("{}", result.refusal);
+        return result;
+    };
+    const FileDescriptor listing = memory_file("lodbench-listing");
+    const FileDescriptor output = memory_file("lodbench-output");
+    ChildProcess child([&] { return tell(plugin, listing.number(), output.number()); });
+    const auto deadline = std::chrono::steady_clock::now() + time_limit;
+    while (!child.wait(std::chrono::milliseconds(50))) {
+        if (std::chrono::steady_clock::now() < deadline) continue;
+        child.kill_group();
+        return refuse(fmt::format("it did not load within {} s{}; a constructor that runs while it is "
+                                  "loaded does not end",
+                                  double(time_limit.count()) / 1000, last_words(output)));
+    }
+    const std::string text = read_all(listing);
+    if (!child.ending().well() || text.empty()) {
+        return refuse(fmt::format("while it was loaded: {}{}; look at the constructors that run then",
+                                  child.ending().words(), last_words(output)));
+    }
+    try {
+        const Json::Value json = report::parse_json(text, plugin.string());
+        result.refusal = report::get_string(json, "refusal", plugin.string());
+        for (const Json::Value& method : report::get_array(json, "methods", plugin.string())) {
+            result.methods.push_back(read_method(method, plugin.string()));
+        }
+    } catch (const std::exception& error) {
+        result.methods.clear();
+        return refuse(fmt::format("its listing makes no sense: {}", error.what()));
+    }
+    return result;
+}
+
+std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
+    std::vector<PluginListing> listings;
+    std::set<fs::path> seen;
+    for (const fs::path& folder : folders) {
+        loader_log("looking into {}", folder.string());
+        std::error_code error;
+        std::vector<fs::path> files;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+            if (entry->path().extension() == ".so") files.push_back(entry->path());
+        }
+        if (error) {
+            listings.push_back({folder, {}, fmt::format("plugin folder {} cannot be read: {}; correct "
+                                                        "--plugin-dir or LODBENCH_PLUGIN_PATH",
+                                                        folder.string(), error.message())});
+            continue;
+        }
+        std::ranges::sort(files);
+        for (const fs::path& file : files) {
+            // The same file in two folders, or one folder named twice, is one plugin.
+            std::error_code ignored;
+            fs::path path = fs::canonical(file, ignored);
+            if (path.empty()) path = fs::absolute(file);
+            if (!seen.insert(path).second) continue;
+            listings.push_back(list_plugin(path));
+        }
+    }
+    refuse_duplicates(listings);
+    return listings;
+}
+
+}  // namespace lodbench::run

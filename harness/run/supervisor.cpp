@@ -1,0 +1,254 @@
+#include "run/supervisor.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <utility>
+
+#include "api/error.h"
+#include "run/cell_record.h"
+#include "run/child_process.h"
+
+namespace lodbench::run {
+
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::size_t kLogLimit = 1 << 20;
+constexpr auto kWatchInterval = std::chrono::milliseconds(20);
+
+/// The page that both processes map.
+class SharedSigns {
+public:
+    explicit SharedSigns(int descriptor) {
+        void* page = mmap(nullptr, sizeof(VitalSigns), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+        if (page == MAP_FAILED) {
+            throw EnvironmentError(fmt::format("cannot map shared memory: {}", std::strerror(errno)));
+        }
+        signs_ = static_cast<VitalSigns*>(page);
+    }
+    ~SharedSigns() { munmap(signs_, sizeof(VitalSigns)); }
+    SharedSigns(const SharedSigns&) = delete;
+    SharedSigns& operator=(const SharedSigns&) = delete;
+    [[nodiscard]] VitalSigns& operator*() const { return *signs_; }
+    [[nodiscard]] VitalSigns* operator->() const { return signs_; }
+
+private:
+    VitalSigns* signs_;
+};
+
+/// What a child prints, into a file that appears with the first byte and stops growing at its limit. A log
+/// that cannot be written loses its text, not the cell.
+class Log {
+public:
+    explicit Log(std::filesystem::path path) : path_(std::move(path)) {}
+
+    /// Takes all that is in the pipe now.
+    void drain(int pipe) {
+        char block[16384];
+        for (ssize_t count = 0; (count = read(pipe, block, sizeof block)) > 0;) {
+            if (written_ >= kLogLimit) continue;
+            if (!stream_.is_open()) stream_.open(path_, std::ios::binary);
+            const std::size_t taken = std::min(std::size_t(count), kLogLimit - written_);
+            stream_.write(block, std::streamsize(taken));
+            written_ += taken;
+            if (written_ == kLogLimit) stream_ << "\n[cut here: the log has reached its limit]\n";
+        }
+        stream_.flush();
+    }
+
+private:
+    std::filesystem::path path_;
+    std::ofstream stream_;
+    std::size_t written_ = 0;
+};
+
+/// Resident bytes of a process; 0 when it is gone.
+std::uint64_t resident_bytes(pid_t pid) {
+    const FileDescriptor file(open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
+    char text[128] = {};
+    if (!file || read(file.number(), text, sizeof text - 1) <= 0) return 0;
+    unsigned long long total = 0;
+    unsigned long long resident = 0;
+    if (std::sscanf(text, "%llu %llu", &total, &resident) != 2) return 0;
+    return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
+}
+
+/// True where a plugin is asked for a frame: there, and only there, silence means a hang.
+bool belongs_to_a_frame(Call call) {
+    switch (call) {
+        case Call::select:
+        case Call::draw:
+        case Call::settle:
+        case Call::pause_background:
+        case Call::resume_background:
+        case Call::counters: return true;
+        default: return false;
+    }
+}
+
+/// "in draw of plugin X.so, frame 3 of the timing replay", or that it was in none of its calls.
+std::string place(const VitalSigns& signs, const std::string& plugin) {
+    const Call call = signs.call.load();
+    const int frame = signs.frame.load();
+    const char* replay = signs.replay.load() == 1 ? "timing" : "lockstep";
+    const std::string when = signs.replay.load() != 0 && frame >= 0
+                                 ? fmt::format(", frame {} of the {} replay", frame, replay)
+                                 : std::string();
+    switch (call) {
+        case Call::none: return fmt::format("between the calls of plugin {}{}", plugin, when);
+        case Call::start: return fmt::format("before the first call of plugin {}", plugin);
+        case Call::load_terrain:
+            return fmt::format("while the terrain was loaded, before the first call of plugin {}", plugin);
+        case Call::open_plugin: return fmt::format("while plugin {} was opened", plugin);
+        case Call::write_results: return fmt::format("after the last call of plugin {}", plugin);
+        default: return fmt::format("in {} of plugin {}{}", name_of(call), plugin, when);
+    }
+}
+
+CellResult ended(CellStatus status, std::string reason, std::uint64_t peak) {
+    CellResult result;
+    result.status = status;
+    result.reason = std::move(reason);
+    if (peak > 0) result.peak_rss_bytes = peak;
+    return result;
+}
+
+void make_inheritable(int descriptor) {
+    fcntl(descriptor, F_SETFD, 0);
+}
+
+/// In the child: becomes `program cell`. Returns only when that fails.
+int become_cell(const std::filesystem::path& program, int spec, int signs, int result, int output) {
+    dup2(output, STDOUT_FILENO);
+    dup2(output, STDERR_FILENO);
+    const int null = open("/dev/null", O_RDONLY);
+    dup2(null, STDIN_FILENO);
+    // A crash is expected here and recorded in words; a dump of gigabytes for each helps nobody.
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    for (const int descriptor : {spec, signs, result}) make_inheritable(descriptor);
+    const std::string descriptors[] = {std::to_string(spec), std::to_string(signs), std::to_string(result)};
+    execl(program.c_str(), program.c_str(), "cell", "--spec", descriptors[0].c_str(), "--signs",
+          descriptors[1].c_str(), "--result", descriptors[2].c_str(), nullptr);
+    fmt::print(stderr, "cannot run {}: {}\n", program.string(), std::strerror(errno));
+    return 127;
+}
+
+}  // namespace
+
+CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::filesystem::path& program,
+                    const std::filesystem::path& log_path, const CellProgress& progress) {
+    const FileDescriptor spec_file = memory_file("lodbench-spec");
+    const FileDescriptor signs_file = memory_file("lodbench-signs");
+    const FileDescriptor result_file = memory_file("lodbench-result");
+    if (!write_all(spec_file.number(), write_spec(spec)) ||
+        ftruncate(signs_file.number(), sizeof(VitalSigns)) != 0) {
+        throw EnvironmentError(fmt::format("cannot share memory with a child: {}", std::strerror(errno)));
+    }
+    const SharedSigns signs(signs_file.number());
+    new (&*signs) VitalSigns;
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
+        throw EnvironmentError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+    }
+    const FileDescriptor reading(ends[0]);
+    FileDescriptor writing(ends[1]);
+
+    const std::string plugin = spec.plugin.filename().string();
+    Log log(log_path);
+    const auto start = SteadyClock::now();
+    ChildProcess child([&] {
+        fcntl(writing.number(), F_SETFL, 0);  // a plugin that prints much waits, it does not lose
+        return become_cell(program, spec_file.number(), signs_file.number(), result_file.number(),
+                           writing.number());
+    });
+    writing.close();
+
+    std::uint64_t peak = 0;
+    std::uint64_t beats = 0;
+    auto last_beat = start;
+    while (!child.wait(kWatchInterval, reading.number())) {
+        log.drain(reading.number());
+        const auto now = SteadyClock::now();
+        const std::uint64_t resident = resident_bytes(child.pid());
+        peak = std::max(peak, resident);
+        const auto seconds = [now](auto since) { return std::chrono::duration<double>(now - since).count(); };
+        const auto kill_for = [&](CellStatus status, const std::string& what) {
+            // Where it stood, read before it is gone for good.
+            const std::string reason = fmt::format("{} {}", what, place(*signs, plugin));
+            child.kill_group();
+            while (!child.wait(kWatchInterval)) {
+            }
+            log.drain(reading.number());
+            return ended(status, reason, peak);
+        };
+        if (resident > limits.memory_bytes) {
+            return kill_for(CellStatus::failed, fmt::format("exceeded the memory limit of {} MiB",
+                                                            limits.memory_bytes >> 20));
+        }
+        if (const std::uint64_t beat = signs->beats.load(); beat != beats) {
+            beats = beat;
+            last_beat = now;
+        }
+        if (belongs_to_a_frame(signs->call.load()) && seconds(last_beat) > limits.frame_s) {
+            return kill_for(CellStatus::timeout, fmt::format("no sign of life for {} s", limits.frame_s));
+        }
+        if (seconds(start) > limits.cell_s) {
+            return kill_for(CellStatus::timeout, fmt::format("exceeded the cell's time limit of {} s",
+                                                             limits.cell_s));
+        }
+        if (progress) {
+            const int total = signs->frames_total.load();
+            const int frame = signs->frame.load() + 1;
+            progress(signs->replay.load() == 2 ? frame + total / 2 : frame, total);
+        }
+    }
+    log.drain(reading.number());
+
+    const Ending& ending = child.ending();
+    const std::string text = read_all(result_file);
+    if (signs->finished.load() == 1 && !text.empty()) {
+        CellResult result;
+        try {
+            result = read_result(text, "result of plugin " + plugin);
+        } catch (const InputError& error) {
+            return ended(CellStatus::failed, error.what(), peak);
+        }
+        if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
+        if (!ending.well()) result.warnings.push_back(fmt::format("after the result was written: {}", ending.words()));
+        return result;
+    }
+    // A process that ends well without a result was ended by the plugin, not by us.
+    return ended(CellStatus::crashed,
+                 fmt::format("{} {}{}", ending.words(), place(*signs, plugin),
+                             ending.by_signal ? "" : " before its result was written"),
+                 peak);
+}
+
+int serve_cell(int spec_descriptor, int signs_descriptor, int result_descriptor) {
+    const SharedSigns signs(signs_descriptor);
+    signs->enter(Call::start);
+    CellSpec spec;
+    {
+        const FileDescriptor file(spec_descriptor);
+        spec = read_spec(read_all(file), "specification of a cell");
+    }
+    const CellResult result = fly_cell(spec, *signs);
+    signs->enter(Call::write_results);
+    if (!write_all(result_descriptor, write_result(result))) return 1;
+    signs->finished.store(1);
+    return 0;
+}
+
+}  // namespace lodbench::run

@@ -1,0 +1,32 @@
+#pragma once
+// One cell in a child process, watched from outside: time, signs of life, memory, how it ended.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+#include "run/cell.h"
+
+namespace lodbench::run {
+
+/// What a cell may use before it is killed.
+struct CellLimits {
+    double cell_s = 600;                          ///< wall time of the whole cell
+    double frame_s = 60;                          ///< without a sign of life while frames are drawn
+    std::uint64_t memory_bytes = 8ULL << 30;      ///< resident
+};
+
+/// Where a cell stands, for a line of progress.
+using CellProgress = std::function<void(int frames_done, int frames_total)>;
+
+/// Runs `program cell` for the specification and waits. What the child prints goes to `log`, cut after
+/// 1 MiB. Whatever the child does, a result comes back; EnvironmentError only when none could be started.
+[[nodiscard]] CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
+                                  const std::filesystem::path& program,
+                                  const std::filesystem::path& log, const CellProgress& progress);
+
+/// The child's side: reads the specification from descriptor `spec`, flies it, writes the result to
+/// descriptor `result`; `signs` holds the shared VitalSigns. Exit status.
+[[nodiscard]] int serve_cell(int spec, int signs, int result);
+
+}  // namespace lodbench::run
