@@ -14,7 +14,7 @@ namespace lodbench::measure {
 
 namespace {
 
-constexpr int kSize = 512;
+constexpr int kSize = 256;
 constexpr int kRounds = 7;
 // Long enough that the bracket's own cost (two waits, tens of microseconds) does not matter.
 constexpr double kLoadMs = 5;
