@@ -44,8 +44,8 @@ struct Mapping {
 /// What the paper leaves open:
 /// - The field of view is extended whatever the pitch, so that the mapping does not jump as the camera
 ///   tilts, and along the picture's vertical only: that is what reaches the ground below the viewpoint.
-/// - As long as no ray comes near the horizon the auxiliary camera is the main one, its roll included.
-///   Otherwise it does not roll: it takes in the upright rectangle around the rolled picture.
+/// - As long as no ray comes near the horizon, and (2) leaves the pitch alone, the auxiliary camera is the
+///   main one, its roll included. Otherwise it does not roll: it takes in the upright rectangle around the rolled picture.
 /// - A tilted camera sees the far ground narrower: its horizontal field of view is widened so that it takes
 ///   in, at the lowest elevation that both share (where the ratio is greatest), all that the main one sees.
 /// - epsilon is 1e-4, or less where the terrain reaches farther than that ray would.
@@ -72,7 +72,9 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
     const double corner_length = std::sqrt(1 + glm::dot(tangents, tangents));
     const double main_pitch = std::atan2(-forward.z, std::hypot(forward.x, forward.y));
 
-    if (highest_slope <= -kHorizonGuard * corner_length) {
+    // The second condition matters to a rolled camera alone, whose picture's vertical is not the world's.
+    if (highest_slope <= -kHorizonGuard * corner_length &&
+        main_pitch >= std::atan(smallest_vertical)) {
         mapping.pitch = main_pitch;
         mapping.first = forward - tangents.x * right + tangents.y * up;
         mapping.across = 2 * tangents.x * right;
