@@ -3,10 +3,12 @@
 usage: documents_test.py SOURCE_DIR LODBENCH_BINARY
 """
 
+import json
 import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -69,6 +71,19 @@ class Documents(unittest.TestCase):
                 used += 1
                 self.assertRegex(help_text, rf"(?<![\w-]){option}(?![\w-])", line)
         self.assertGreater(used, 5)
+
+    def test_readme_names_every_field_of_a_cell(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            status, text = run("run", "--method", "full-grid", "--frames", "2", "--size", "64x48",
+                               "--repeat", "1", "--out", str(out))
+            self.assertEqual(status, 0, text)
+            cell = json.loads((out / "cells.jsonl").read_text().splitlines()[0])
+            for name in re.findall(r"`([\w./]+)`", readme_section("Results").split("|")[0]):
+                if "/" not in name.rstrip("/"):
+                    self.assertTrue((out / name).exists(), name)
+        rows = re.findall(r"^\| (`[^|]*`) \|", readme_section("Results"), re.MULTILINE)
+        self.assertEqual(sorted(re.findall(r"`(\w+)`", " ".join(rows))), sorted(cell))
 
     def test_readme_points_at_files_that_exist(self):
         for path in re.findall(r"\]\(([^)#:]+)\)", README):

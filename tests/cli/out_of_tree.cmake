@@ -19,8 +19,8 @@ step("install" ${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/inst
 file(RENAME ${WORK_DIR}/installed ${WORK_DIR}/moved)
 set(lodbench ${WORK_DIR}/moved/bin/lodbench)
 
-step("list of the installed methods" ${lodbench} list)
-if(NOT output MATCHES "full-grid" OR NOT output MATCHES "${WORK_DIR}/moved/")
+step("list of the installed methods" ${lodbench} list --json)
+if(NOT output MATCHES "\"id\":\"full-grid\"" OR NOT output MATCHES "${WORK_DIR}/moved/.*/full_grid.so")
   message(FATAL_ERROR "the installed program does not find its own plugins:\n${output}")
 endif()
 
@@ -29,8 +29,8 @@ step("configure" ${CMAKE_COMMAND} -S ${WORK_DIR}/hello -B ${WORK_DIR}/hello/buil
      -DCMAKE_PREFIX_PATH=${WORK_DIR}/moved)
 step("build" ${CMAKE_COMMAND} --build ${WORK_DIR}/hello/build)
 
-step("list of the new method" ${lodbench} list --plugin-dir ${WORK_DIR}/hello/build)
-if(NOT output MATCHES "hello")
+step("list of the new method" ${lodbench} list --json --plugin-dir ${WORK_DIR}/hello/build)
+if(NOT output MATCHES "\"id\":\"hello\"")
   message(FATAL_ERROR "the new method is not listed:\n${output}")
 endif()
 step("promises of the new method" ${lodbench} validate ${WORK_DIR}/hello/build/hello.so)
