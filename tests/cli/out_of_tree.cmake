@@ -1,19 +1,30 @@
 # A method outside the tree: installs lodbench into a prefix, moves that prefix, and there writes, builds,
 # validates and flies a new method with nothing but what was installed.
 #
-# cmake -DBUILD_DIR=... -DWORK_DIR=... -DGENERATOR=... -P out_of_tree.cmake
+# cmake -DBUILD_DIR=... -DGENERATOR=... -P out_of_tree.cmake
 
+# Not in the build tree, where the program would use the build's own plugins.
+set(temporary $ENV{TMPDIR})
+if(NOT temporary)
+  set(temporary /tmp)
+endif()
+string(RANDOM LENGTH 8 suffix)
+set(WORK_DIR ${temporary}/lodbench-out-of-tree-${suffix})
+
+function(stop message)
+  file(REMOVE_RECURSE ${WORK_DIR})
+  message(FATAL_ERROR "${message}")
+endfunction()
 # step(WHAT command...): runs it in WORK_DIR, and gives its output as `output`.
 function(step what)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${WORK_DIR} RESULT_VARIABLE status
                   OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${what}: exit status ${status}\n${text}")
+    stop("${what}: exit status ${status}\n${text}")
   endif()
   set(output "${text}" PARENT_SCOPE)
 endfunction()
 
-file(REMOVE_RECURSE ${WORK_DIR})
 file(MAKE_DIRECTORY ${WORK_DIR})
 step("install" ${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/installed)
 file(RENAME ${WORK_DIR}/installed ${WORK_DIR}/moved)
@@ -21,7 +32,7 @@ set(lodbench ${WORK_DIR}/moved/bin/lodbench)
 
 step("list of the installed methods" ${lodbench} list --json)
 if(NOT output MATCHES "\"id\":\"full-grid\"" OR NOT output MATCHES "${WORK_DIR}/moved/.*/full_grid.so")
-  message(FATAL_ERROR "the installed program does not find its own plugins:\n${output}")
+  stop("the installed program does not find its own plugins:\n${output}")
 endif()
 
 step("new-method" ${lodbench} new-method hello)
@@ -31,13 +42,13 @@ step("build" ${CMAKE_COMMAND} --build ${WORK_DIR}/hello/build)
 
 step("list of the new method" ${lodbench} list --json --plugin-dir ${WORK_DIR}/hello/build)
 if(NOT output MATCHES "\"id\":\"hello\"")
-  message(FATAL_ERROR "the new method is not listed:\n${output}")
+  stop("the new method is not listed:\n${output}")
 endif()
 step("promises of the new method" ${lodbench} validate ${WORK_DIR}/hello/build/hello.so)
 step("flight of the new method" ${lodbench} run --plugin-dir ${WORK_DIR}/hello/build --method hello
      --frames 3 --size 64x48 --repeat 1 --out ${WORK_DIR}/results)
 file(READ ${WORK_DIR}/results/cells.jsonl cells)
 if(NOT cells MATCHES "\"status\" *: *\"ok\"")
-  message(FATAL_ERROR "the new method did not fly:\n${cells}")
+  stop("the new method did not fly:\n${cells}")
 endif()
 file(REMOVE_RECURSE ${WORK_DIR})
