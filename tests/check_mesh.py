@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Checks a mesh that `lodbench mesh` wrote, sharing no code with lodbench (numpy only).
 
-check_mesh.py MESH.ply [--watertight] [--covers-terrain] [--same-surface FULL_GRID.ply] [--shares-vertices]
-              [--max-triangles N]
+check_mesh.py MESH.ply [--watertight] [--covers-terrain] [--same-surface FULL_GRID.ply [--within METRES]]
+              [--shares-vertices] [--max-triangles N]
 
 Always: the header is complete, every number is finite, every index is in range, and the camera's fields
 agree with its matrices: a vertex projected through the matrices lands on the pixel that the position, the
@@ -14,7 +14,7 @@ orientation and the field of view give.
                     Needs a mesh --before-clipping whose vertices are grid samples; degenerate faces are
                     left out.
 --covers-terrain    the mesh's rectangle contains the terrain's extent.
---same-surface F    at each sample of the terrain the mesh has F's height, to float rounding.
+--same-surface F    at each sample of the terrain the mesh has F's height, to float rounding and --within.
 --shares-vertices   for meshes off the grid: no edge is used more than twice, and edges that are used once
                     form closed loops (each vertex has an even number of them): neighbours share their
                     vertices to the bit.
@@ -227,19 +227,19 @@ def heights_at_samples(mesh):
     return surface
 
 
-def check_same_surface(mesh, other):
+def check_same_surface(mesh, other, within):
     for name in ("checksum", "rows", "columns"):
         require(mesh.fields.get(name) == other.fields.get(name), f"the two meshes differ in {name}")
     ours, theirs = heights_at_samples(mesh), heights_at_samples(other)
     require(not np.isnan(theirs).any(), "the other mesh does not cover the terrain")
     require(not np.isnan(ours).any(), f"{int(np.isnan(ours).sum())} samples are not covered")
     difference = np.abs(ours - theirs)
-    allowed = mesh.rounding() + other.rounding()
+    allowed = mesh.rounding() + other.rounding() + within
     row, column = np.unravel_index(np.argmax(difference), difference.shape)
     require(difference.max() <= allowed,
             f"heights differ by up to {difference.max():.6g} m (column {column}, row {row} from the south); "
-            f"rounding allows {allowed:.3g} m")
-    return f"same surface to {difference.max():.3g} m (rounding allows {allowed:.3g} m)"
+            f"{allowed:.3g} m are allowed")
+    return f"same surface to {difference.max():.3g} m ({allowed:.3g} m are allowed)"
 
 
 def check_shares(mesh):
@@ -260,6 +260,7 @@ def main():
     parser.add_argument("--watertight", action="store_true")
     parser.add_argument("--covers-terrain", action="store_true")
     parser.add_argument("--same-surface", metavar="FULL_GRID.ply")
+    parser.add_argument("--within", type=float, default=0.0)
     parser.add_argument("--shares-vertices", action="store_true")
     parser.add_argument("--max-triangles", type=int)
     arguments = parser.parse_args()
@@ -271,7 +272,7 @@ def main():
         if arguments.covers_terrain:
             said.append(check_covers(mesh))
         if arguments.same_surface:
-            said.append(check_same_surface(mesh, Mesh(arguments.same_surface)))
+            said.append(check_same_surface(mesh, Mesh(arguments.same_surface), arguments.within))
         if arguments.shares_vertices:
             said.append(check_shares(mesh))
         if arguments.max_triangles is not None:
