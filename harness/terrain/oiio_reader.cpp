@@ -15,8 +15,10 @@
 #include <array>
 #include <cctype>
 #include <cstring>
-#include <fstream>
+#include <string_view>
 #include <vector>
+
+#include "terrain/png_check.h"
 
 namespace lodbench::terrain {
 namespace {
@@ -46,6 +48,11 @@ void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first, std:
 class OiioReader final : public RasterReader {
 public:
     explicit OiioReader(const std::filesystem::path& file) : file_(file) {
+        if (format_of(file) == std::string_view("png")) {
+            const PngHeader header = check_png(file);
+            check_raster_size(file, header.height, header.width);
+            png_bit_depth_ = header.bit_depth;
+        }
         input_ = OIIO::ImageInput::create(format_of(file));
         if (!input_) {
             throw EnvironmentError(fmt::format("{}: this OpenImageIO has no reader for {}; {}",
@@ -109,20 +116,13 @@ private:
     /// "white is zero" over. Heights must come as they were written, so these are refused.
     void refuse_stretched() const {
         int bits = spec_.get_int_attribute("oiio:BitsPerSample", int(spec_.format.size() * 8));
-        if (std::string_view(input_->format_name()) == "png") bits = png_bit_depth();
+        if (png_bit_depth_ > 0) bits = png_bit_depth_;
         if (bits != int(spec_.format.size() * 8)) {
             refuse(fmt::format("{} bits a sample; convert it to 8 or 16", bits));
         }
         if (spec_.get_int_attribute("tiff:PhotometricInterpretation", 1) == 0) {
             refuse("white is zero in this TIFF; convert it to black is zero");
         }
-    }
-
-    /// Byte 24 of a PNG: its header chunk always comes first (PNG, second edition, 5.6 and 11.2.2).
-    [[nodiscard]] int png_bit_depth() const {
-        std::ifstream stream(file_, std::ios::binary);
-        stream.seekg(24);
-        return stream.get();
     }
 
     void read_strip(int row) {
@@ -148,6 +148,7 @@ private:
     OIIO::ImageSpec spec_;
     OIIO::TypeDesc type_;
     std::vector<std::byte> strip_;
+    int png_bit_depth_ = 0;  ///< 0: not a PNG
     int strip_begin_ = 0;
     int strip_end_ = 0;
 };

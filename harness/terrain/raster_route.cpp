@@ -7,9 +7,7 @@
 #include <cctype>
 #include <cstdint>
 #include <fstream>
-#include <limits>
 #include <string_view>
-#include <vector>
 
 #include "api/error.h"
 #include "terrain/raster_reader.h"
@@ -17,11 +15,13 @@
 namespace lodbench::terrain {
 namespace {
 
-/// Looks for georeference among the tags of a TIFF's first directory (TIFF 6.0 section 2; BigTIFF). What
-/// cannot be followed counts as no tag: the reader that gets the file says what is wrong with it.
+/// The tags of a TIFF's first directory (TIFF 6.0 section 2; BigTIFF). Both libraries pass over a tag whose
+/// data lies beyond the end of a truncated file, and with it over the georeference, so that is refused
+/// here. What cannot be followed otherwise counts as no tag: the library that gets the file says why.
 class TiffTags {
 public:
-    explicit TiffTags(const std::filesystem::path& file) : stream_(file, std::ios::binary) {}
+    explicit TiffTags(const std::filesystem::path& file)
+        : file_(file), stream_(file, std::ios::binary), file_bytes_(std::filesystem::file_size(file)) {}
 
     bool georeferenced() {
         std::array<char, 2> order{};
@@ -32,20 +32,41 @@ public:
         if (big_tiff) stream_.seekg(8);
         const int word = big_tiff ? 8 : 4;
         const std::uint64_t directory = number(word);
-        if (directory > std::uint64_t(std::numeric_limits<std::int64_t>::max())) return false;
+        if (directory >= file_bytes_) refuse_truncated("its directory");
         stream_.seekg(std::streamoff(directory));
         const std::uint64_t count = std::min<std::uint64_t>(number(big_tiff ? 8 : 2), 65535);
-        for (std::uint64_t i = 0; i < count && stream_; ++i) {
+        bool found = false;
+        for (std::uint64_t i = 0; i < count; ++i) {
             const std::uint64_t tag = number(2);
-            if (stream_ && std::ranges::find(kTags, tag) != kTags.end()) return true;
-            stream_.seekg(big_tiff ? 18 : 10, std::ios::cur);
+            const std::uint64_t size = bytes_of(number(2));
+            const std::uint64_t values = number(word);
+            const std::uint64_t data = number(word);
+            if (!stream_) refuse_truncated("its directory");
+            const bool inside = values <= std::uint64_t(word) / size ||
+                                (data <= file_bytes_ && values <= (file_bytes_ - data) / size);
+            if (!inside) refuse_truncated(fmt::format("the data of tag {}", tag));
+            found = found || std::ranges::find(kTags, tag) != kTags.end();
         }
-        return false;
+        return found;
     }
 
 private:
     static constexpr std::array<std::uint64_t, 6> kTags = {33550, 33922, 34264,
                                                            34735, 42112, 42113};
+
+    [[noreturn]] void refuse_truncated(const std::string& what) const {
+        throw InputError(fmt::format("{}: {} lies beyond its end, at byte {}; it is truncated, fetch it "
+                                     "anew",
+                                     file_.string(), what, file_bytes_));
+    }
+
+    /// Bytes of one value of a TIFF type; 1 for those unknown.
+    static std::uint64_t bytes_of(std::uint64_t type) {
+        static constexpr std::array<std::uint64_t, 19> kBytes = {1, 1, 1, 2, 4, 8, 1, 1, 2, 4,
+                                                                 8, 4, 8, 4, 1, 1, 8, 8, 8};
+        return type < kBytes.size() ? kBytes[type] : 1;
+    }
+
     std::uint64_t number(int size) {
         std::array<unsigned char, 8> bytes{};
         stream_.read(reinterpret_cast<char*>(bytes.data()), size);
@@ -55,7 +76,9 @@ private:
         }
         return value;
     }
+    const std::filesystem::path& file_;
     std::ifstream stream_;
+    std::uint64_t file_bytes_;
     bool big_endian_ = false;
 };
 

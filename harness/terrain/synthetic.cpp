@@ -131,7 +131,7 @@ HeightFunction sphere_cap(const Shape& shape, const TerrainInfo& info) {
     const double radius = shape.real("radius", std::max(extent.x, extent.y));
     if (!(radius > 0 && radius * radius >= corner2)) {
         shape.refuse("radius", radius,
-                     fmt::format("the sphere must reach the corners, {} m from the centre",
+                     fmt::format("the sphere must reach the corners, {:.6g} m from the centre",
                                  std::sqrt(corner2)));
     }
     const double rim = std::sqrt(radius * radius - corner2);
@@ -165,40 +165,56 @@ std::uint64_t mix(std::uint64_t bits) {
     return bits ^ (bits >> 31);
 }
 
-/// Perlin's gradient noise (1985, with the quintic of 2002) on the integer lattice. The gradient of a node
-/// is a hashed vector made unit length: its directions crowd a little at the diagonals, which a surface to
-/// be measured does not mind, and it needs no sine.
+/// Unit vectors in uniform directions: hashed points of the square, kept where they fall inside the unit
+/// circle, made unit length. No sine is needed.
+std::vector<glm::dvec2> make_gradients() {
+    constexpr std::size_t kCount = 256;
+    std::vector<glm::dvec2> gradients;
+    for (std::uint64_t draw = 0; gradients.size() < kCount; ++draw) {
+        const std::uint64_t bits = mix(draw);
+        const double x = (double(bits >> 32) - 0x1p31) * 0x1p-31;
+        const double y = (double(bits & 0xFFFFFFFFU) - 0x1p31) * 0x1p-31;
+        const double length2 = x * x + y * y;
+        if (length2 > 0.01 && length2 <= 1) {
+            const double length = std::sqrt(length2);
+            gradients.emplace_back(x / length, y / length);
+        }
+    }
+    return gradients;
+}
+
+/// Perlin's gradient noise (1985, with the quintic of 2002) on the integer lattice, moved by a hashed
+/// fraction of a cell: it is zero at every node, and octaves that share nodes would all peak there.
 class GradientNoise {
 public:
-    explicit GradientNoise(std::uint64_t seed) : seed_(mix(seed)) {}
+    explicit GradientNoise(std::uint64_t seed)
+        : seed_(mix(seed)),
+          shift_(double(mix(seed_ + 1) >> 32) * 0x1p-32, double(mix(seed_ + 2) >> 32) * 0x1p-32) {}
 
     /// In [-sqrt(1/2), sqrt(1/2)].
-    [[nodiscard]] double at(glm::dvec2 p) const {
+    [[nodiscard]] double at(glm::dvec2 place, const std::vector<glm::dvec2>& gradients) const {
+        const glm::dvec2 p = place + shift_;
         const glm::dvec2 cell(std::floor(p.x), std::floor(p.y));
         const glm::dvec2 f = p - cell;
-        const auto column = std::int64_t(cell.x);
-        const auto row = std::int64_t(cell.y);
+        const auto slope = [&](int east, int north) {
+            const glm::dvec2& g =
+                gradients[index(std::int64_t(cell.x) + east, std::int64_t(cell.y) + north)];
+            return g.x * (f.x - east) + g.y * (f.y - north);
+        };
         const double u = fade(f.x);
-        const double v = fade(f.y);
-        const double south = lerp(slope(column, row, f.x, f.y), slope(column + 1, row, f.x - 1, f.y), u);
-        const double north =
-            lerp(slope(column, row + 1, f.x, f.y - 1), slope(column + 1, row + 1, f.x - 1, f.y - 1), u);
-        return lerp(south, north, v);
+        return lerp(lerp(slope(0, 0), slope(1, 0), u), lerp(slope(0, 1), slope(1, 1), u), fade(f.y));
     }
 
 private:
     static double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
     static double lerp(double a, double b, double t) { return a + (b - a) * t; }
 
-    [[nodiscard]] double slope(std::int64_t column, std::int64_t row, double dx, double dy) const {
-        const std::uint64_t bits =
-            mix(seed_ ^ mix(std::uint64_t(column) ^ mix(std::uint64_t(row))));
-        // Odd integers over 2^31: never zero, so that the length is not.
-        const double gx = double(std::int64_t((bits & 0xFFFFFFFFU) | 1U) - 0x80000000LL) * 0x1p-31;
-        const double gy = double(std::int64_t((bits >> 32) | 1U) - 0x80000000LL) * 0x1p-31;
-        return (gx * dx + gy * dy) / std::sqrt(gx * gx + gy * gy);
+    [[nodiscard]] std::size_t index(std::int64_t column, std::int64_t row) const {
+        return mix(seed_ ^ (std::uint64_t(column) * 0x9e3779b97f4a7c15ULL +
+                            std::uint64_t(row) * 0xc2b2ae3d27d4eb4fULL)) >> 56;
     }
     std::uint64_t seed_;
+    glm::dvec2 shift_;
 };
 
 // F. K. Musgrave, "RidgedMultifractal", in Ebert et al., Texturing and Modeling: octave i adds
@@ -223,13 +239,13 @@ HeightFunction ridged(const Shape& shape, const TerrainInfo& info, std::uint64_t
         noises.emplace_back(seed + std::uint64_t(octave) * 0x632be59bd9b4e019ULL);
         amplitude_sum += amplitude;
     }
-    return [=](int row, int column) {
+    return [=, gradients = make_gradients()](int row, int column) {
         glm::dvec2 at = local_position(info, row, column) / wavelength;
         double sum = 0;
         double weight = 1;
         double octave_amplitude = 1;
         for (const GradientNoise& noise : noises) {
-            const double ridge = 1 - std::abs(noise.at(at)) / 0.70710678118654757;
+            const double ridge = 1 - std::abs(noise.at(at, gradients)) / 0.70710678118654757;
             const double signal = weight * (ridge * ridge);
             sum += octave_amplitude * signal;
             weight = std::clamp(gain * signal, 0.0, 1.0);
