@@ -99,6 +99,9 @@ int tell(const fs::path& plugin, int listing, int output) {
         dup2(output, STDOUT_FILENO);
         dup2(output, STDERR_FILENO);
     }
+    // A constructor that calls exit() would run the exit handlers of libraries whose threads did not come
+    // along into this fork: end before them.
+    on_exit([](int status, void*) { _exit(status); }, nullptr);
     const rlimit limit{kOutputLimit, kOutputLimit};
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, SIG_IGN);

@@ -1,0 +1,15 @@
+#include <cstdlib>
+
+#include "quiet_method.h"
+
+namespace {
+
+class Broken final : public QuietMethod {
+public:
+    using QuietMethod::QuietMethod;
+    void draw(const lodbench::View&) override { std::exit(0); }
+};
+
+}  // namespace
+
+QUIET_PLUGIN(Broken, "exits");

@@ -1,0 +1,1 @@
+// A shared object, but no plugin: it exports nothing.

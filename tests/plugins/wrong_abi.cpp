@@ -1,0 +1,4 @@
+#include "quiet_method.h"
+
+extern "C" __attribute__((visibility("default"))) constexpr lodbench::PluginDescriptor lodbench_plugin = {
+    lodbench::kAbi + 98, sizeof(lodbench::PluginDescriptor), lodbench::kAbiTag, nullptr, 0, 0};
