@@ -182,7 +182,7 @@ private:
 };
 
 constexpr ParamSpec kParams[] = {
-    integer_param("grid", 240, 2, 4096, "rows of the grid: vertices from top to bottom of the picture"),
+    integer_param("grid", 240, 2, 2048, "rows of the grid: vertices from top to bottom of the picture"),
     real_param("aspect", 4.0 / 3.0, 0.05, 20, "columns of the grid per row (150x600: 0.25)"),
     real_param("margin", 0.05, 0, 1, "part by which the grid extends beyond the picture"),
     choice_param("base", "zero", "zero|minimum-near",
