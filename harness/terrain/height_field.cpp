@@ -68,6 +68,7 @@ HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
             "terrain '{}': the height at row {}, column {} is {}; every height must be finite",
             info_.name, index / info_.columns, index % info_.columns, *bad));
     }
+    for (float& height : heights_) height += 0.0F;  // -0 + 0 = +0
     const auto [lowest, highest] = std::minmax_element(heights_.begin(), heights_.end());
     info_.min_height = *lowest;
     info_.max_height = *highest;

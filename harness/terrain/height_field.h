@@ -13,7 +13,8 @@
 
 namespace lodbench::terrain {
 
-/// A height field held in memory, row by row, row 0 the north edge. Its checksum is FNV-1a (64 bits)
+/// A height field held in memory, row by row, row 0 the north edge. Negative zeros become
+/// positive ones, so that equal heights have equal bits. The checksum is FNV-1a (64 bits)
 /// over little-endian words of 32 bits: rows, columns, then the bits of every height, row by row.
 class HeightField final : public Terrain {
 public:

@@ -95,6 +95,11 @@ TEST(HeightField, checksum_is_fnv_1a_over_dimensions_and_float_bits) {
     EXPECT_EQ(HeightField(info_of(2, 2), counting(4)).info().checksum, "ea1d0dad7a593b48");
 }
 
+TEST(HeightField, equal_heights_have_equal_bits) {
+    EXPECT_EQ(HeightField(info_of(2, 2), {-0.0F, 1, 2, 3}).info().checksum,
+              HeightField(info_of(2, 2), {0.0F, 1, 2, 3}).info().checksum);
+}
+
 TEST(HeightField, checksum_tells_apart_shape_and_value_but_not_place) {
     const std::string base = HeightField(info_of(2, 6), counting(12)).info().checksum;
     EXPECT_NE(HeightField(info_of(6, 2), counting(12)).info().checksum, base);
