@@ -69,7 +69,7 @@ TEST_P(Watertight, base_mesh_far_away_at_a_huge_tolerance) {
 }
 
 INSTANTIATE_TEST_SUITE_P(lindstrom, Watertight, testing::ValuesIn(kGrounds),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& ground) { return std::string(ground.param.name); });
 
 class FullSurface : public MeshTest {};
 
