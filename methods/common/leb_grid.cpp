@@ -1,6 +1,11 @@
 #include "common/leb_grid.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -26,11 +31,29 @@ int padded_size(const TerrainInfo& info) {
 
 }  // namespace
 
+void LebGrid::Free::operator()(LebVertex* vertices) const {
+    std::free(vertices);
+}
+
+std::unique_ptr<LebVertex[], LebGrid::Free> LebGrid::allocate(std::size_t count) {
+    // Neighbours in a column lie a row apart, on another page each: with pages of 4 KiB the refinement
+    // of a large terrain waits for address translation. The advice may be refused; it is only speed.
+    constexpr std::size_t kHugePage = std::size_t(2) << 20;
+    const std::size_t used = count * sizeof(LebVertex);
+    const bool large = used >= kHugePage;
+    const std::size_t alignment = large ? kHugePage : alignof(std::max_align_t);
+    const std::size_t bytes = (used + alignment - 1) / alignment * alignment;
+    void* memory = std::aligned_alloc(alignment, bytes);
+    if (memory == nullptr) throw std::bad_alloc();
+    if (large) madvise(memory, bytes, MADV_HUGEPAGE);
+    return std::unique_ptr<LebVertex[], Free>(static_cast<LebVertex*>(memory));
+}
+
 LebGrid::LebGrid(const Terrain& terrain)
     : size_(padded_size(terrain.info())),
       spacing_(terrain.info().spacing),
       north_west_(terrain.info().position(0, 0)),
-      vertices_(std::make_unique_for_overwrite<LebVertex[]>(vertex_count())) {
+      vertices_(allocate(vertex_count())) {
     constexpr int kBand = 64;
     const TerrainInfo& info = terrain.info();
     std::vector<float> band(std::size_t(kBand) * std::size_t(info.columns));

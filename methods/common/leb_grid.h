@@ -51,7 +51,11 @@ private:
     int size_ = 0;
     glm::dvec2 spacing_{1.0};
     glm::dvec2 north_west_{0.0};
-    std::unique_ptr<LebVertex[]> vertices_;
+    struct Free {
+        void operator()(LebVertex* vertices) const;
+    };
+    static std::unique_ptr<LebVertex[], Free> allocate(std::size_t count);
+    std::unique_ptr<LebVertex[], Free> vertices_;
 };
 
 }  // namespace lodbench::common

@@ -150,6 +150,9 @@ private:
         const int first_column = (apex_column + start_column) / 2;
         const int second_row = (apex_row - start_row) / 2;
         const int second_column = (apex_column - start_column) / 2;
+        // The two children lie on cache lines of their own more often than not: ask for the second one
+        // while the first is being built.
+        __builtin_prefetch(vertices_ + index(row + second_row, column + second_column));
         child<!edge, checked>(row + first_row, column + first_column, -first_row, -first_column,
                               planes);
         if constexpr (checked) reserve(2);

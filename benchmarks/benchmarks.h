@@ -1,0 +1,28 @@
+#pragma once
+// The subjects of lodbench_benchmarks: one file each. Ratios and rates in one run; no pass or fail.
+
+#include <chrono>
+
+namespace lodbench::benchmarks {
+
+struct Options {
+    int size = 4097;  ///< samples a side of the terrain
+    int frames = 12;
+    int repetitions = 3;
+};
+
+/// Seconds of wall clock that `work` takes.
+template <typename Work>
+double seconds_of(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// `lindstrom`: error preprocessing in ns per sample, refinement in triangles per second on one core.
+void lindstrom_cost(const Options& options);
+
+/// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
+void harness_cost();
+
+}  // namespace lodbench::benchmarks

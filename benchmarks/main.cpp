@@ -1,0 +1,34 @@
+// lodbench_benchmarks [SUBJECT...] [--size N] [--frames N] [--repetitions N]
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "benchmarks.h"
+
+int main(int argc, char** argv) {
+    lodbench::benchmarks::Options options;
+    CLI::App app("Rates of lodbench's own code, printed as measured in this run");
+    std::vector<std::string> subjects = {"harness", "lindstrom"};
+    app.add_option("subjects", subjects, "harness, lindstrom; all when none is named")
+        ->check(CLI::IsMember({"harness", "lindstrom"}));
+    app.add_option("--size", options.size, "samples a side of the terrain")->check(CLI::Range(3, 32769));
+    app.add_option("--frames", options.frames, "cameras of a repetition")->check(CLI::Range(1, 10000));
+    app.add_option("--repetitions", options.repetitions)->check(CLI::Range(1, 1000));
+    CLI11_PARSE(app, argc, argv);
+    const auto wanted = [&](const char* subject) {
+        return std::find(subjects.begin(), subjects.end(), subject) != subjects.end();
+    };
+    try {
+        if (wanted("harness")) lodbench::benchmarks::harness_cost();
+        if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "lodbench_benchmarks: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
