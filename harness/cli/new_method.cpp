@@ -1,4 +1,5 @@
-// lodbench new-method NAME: a copy of the template with everything named NAME, ready to build and fly.
+// lodbench new-method NAME: a copy of the template with everything named NAME, ready to build and
+// fly.
 
 #include <fmt/format.h>
 
@@ -36,20 +37,22 @@ struct MethodName {
     std::string class_name;  ///< "MyMethod"
 };
 
-bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+bool is_lower(char c) {
+    return c >= 'a' && c <= 'z';
+}
 
 bool is_valid(const std::string& id) {
     return !id.empty() && id.size() <= kLongestName && is_lower(id.front()) &&
-           std::all_of(id.begin(), id.end(), [](char c) {
-               return is_lower(c) || (c >= '0' && c <= '9') || c == '-';
-           });
+           std::all_of(id.begin(), id.end(),
+                       [](char c) { return is_lower(c) || (c >= '0' && c <= '9') || c == '-'; });
 }
 
 MethodName parse_name(const std::string& id) {
     if (!is_valid(id)) {
-        throw InputError(fmt::format("new-method '{}': a name is a lower-case letter, then up to {} of a-z, "
-                                     "0-9 and '-'; for example 'my-method'",
-                                     id, kLongestName - 1));
+        throw InputError(
+            fmt::format("new-method '{}': a name is a lower-case letter, then up to {} of a-z, "
+                        "0-9 and '-'; for example 'my-method'",
+                        id, kLongestName - 1));
     }
     MethodName name{id, id, ""};
     std::replace(name.snake_case.begin(), name.snake_case.end(), '-', '_');
@@ -59,10 +62,12 @@ MethodName parse_name(const std::string& id) {
         word_begins = c == '-';
     }
     // CMake's own target names, and the folders of methods/ that are no plugin.
-    constexpr std::array kReserved = {"common", "template", "template-method", "all", "clean", "install",
-                                      "test", "help", "lodbench"};
+    constexpr std::array kReserved = {"common", "template", "template-method",
+                                      "all",    "clean",    "install",
+                                      "test",   "help",     "lodbench"};
     if (std::find(kReserved.begin(), kReserved.end(), id) != kReserved.end()) {
-        throw InputError(fmt::format("new-method '{}': the name is taken by lodbench or CMake; choose another", id));
+        throw InputError(fmt::format(
+            "new-method '{}': the name is taken by lodbench or CMake; choose another", id));
     }
     return name;
 }
@@ -74,15 +79,17 @@ fs::path template_folder() {
     for (const fs::path& place : places) {
         if (fs::exists(place / "template_method.cpp")) return place;
     }
-    throw EnvironmentError(fmt::format("the template of methods is neither in {} nor in {}; install lodbench whole",
-                                       places[0].string(), places[1].string()));
+    throw EnvironmentError(
+        fmt::format("the template of methods is neither in {} nor in {}; install lodbench whole",
+                    places[0].string(), places[1].string()));
 }
 
 std::string read_text(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     if (!stream || !(text << stream.rdbuf())) {
-        throw EnvironmentError(fmt::format("cannot read {}: {}", file.string(), std::strerror(errno)));
+        throw EnvironmentError(
+            fmt::format("cannot read {}: {}", file.string(), std::strerror(errno)));
     }
     return text.str();
 }
@@ -91,7 +98,9 @@ void write_text(const fs::path& file, const std::string& text) {
     std::ofstream stream(file, std::ios::binary | std::ios::trunc);
     stream << text;
     stream.flush();
-    if (!stream) throw EnvironmentError(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+    if (!stream)
+        throw EnvironmentError(
+            fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
 }
 
 std::string rename_all(std::string text, const MethodName& name) {
@@ -114,8 +123,9 @@ void copy_template(const fs::path& folder, const MethodName& name) {
     const fs::path source = template_folder();
     std::error_code error;
     if (fs::exists(fs::symlink_status(folder, error))) {
-        throw InputError(fmt::format("{} exists already and is left as it is; choose another name or --dir",
-                                     folder.string()));
+        throw InputError(
+            fmt::format("{} exists already and is left as it is; choose another name or --dir",
+                        folder.string()));
     }
     const fs::path unfinished = folder.string() + ".unfinished";
     fs::create_directories(folder.parent_path(), error);
@@ -125,7 +135,8 @@ void copy_template(const fs::path& folder, const MethodName& name) {
     }
     try {
         for (const char* file : kTemplateFiles) {
-            write_text(unfinished / rename_all(file, name), rename_all(read_text(source / file), name));
+            write_text(unfinished / rename_all(file, name),
+                       rename_all(read_text(source / file), name));
         }
         fs::rename(unfinished, folder, error);
         if (error) {
@@ -146,7 +157,8 @@ void add_to_tree(const fs::path& list, const MethodName& name) {
     write_text(unfinished, text);
     std::error_code error;
     fs::rename(unfinished, list, error);
-    if (error) throw EnvironmentError(fmt::format("cannot write {}: {}", list.string(), error.message()));
+    if (error)
+        throw EnvironmentError(fmt::format("cannot write {}: {}", list.string(), error.message()));
 }
 
 /// For a shell: as it is where nothing in it is special, else in single quotes.
@@ -174,11 +186,13 @@ void new_method(const std::string& id, const std::string& directory) {
         const fs::path folder = fs::path("methods") / name.snake_case;
         copy_template(folder, name);
         add_to_tree(list, name);
-        print_steps(folder, {"cmake -S . -B build/release -DCMAKE_BUILD_TYPE=Release",
-                             fmt::format("cmake --build build/release --target lodbench {}", name.snake_case),
-                             fmt::format("build/release/bin/lodbench run --plugin-dir build/release/plugins "
-                                         "--method {}",
-                                         id)});
+        print_steps(
+            folder,
+            {"cmake -S . -B build/release -DCMAKE_BUILD_TYPE=Release",
+             fmt::format("cmake --build build/release --target lodbench {}", name.snake_case),
+             fmt::format("build/release/bin/lodbench run --plugin-dir build/release/plugins "
+                         "--method {}",
+                         id)});
         return;
     }
     const fs::path folder = fs::path(directory) / id;
@@ -187,16 +201,19 @@ void new_method(const std::string& id, const std::string& directory) {
     fs::path prefix = program.parent_path().parent_path();
     std::vector<std::string> steps;
     if (fs::exists(prefix / "CMakeCache.txt")) {
-        // Not an installed lodbench but the one in its build tree: find_package needs an installed one.
+        // Not an installed lodbench but the one in its build tree: find_package needs an installed
+        // one.
         const fs::path build = prefix;
         prefix = build / "installed";
-        steps.push_back(fmt::format("cmake --install {} --prefix {}", quoted(build), quoted(prefix)));
+        steps.push_back(
+            fmt::format("cmake --install {} --prefix {}", quoted(build), quoted(prefix)));
     }
     const fs::path build = folder / "build";
-    steps.push_back(fmt::format("cmake -S {} -B {} -DCMAKE_PREFIX_PATH={}", quoted(folder), quoted(build),
-                                quoted(prefix)));
+    steps.push_back(fmt::format("cmake -S {} -B {} -DCMAKE_PREFIX_PATH={}", quoted(folder),
+                                quoted(build), quoted(prefix)));
     steps.push_back(fmt::format("cmake --build {}", quoted(build)));
-    steps.push_back(fmt::format("{} run --plugin-dir {} --method {}", quoted(program), quoted(build), id));
+    steps.push_back(
+        fmt::format("{} run --plugin-dir {} --method {}", quoted(program), quoted(build), id));
     print_steps(folder, steps);
 }
 
@@ -204,8 +221,9 @@ void new_method(const std::string& id, const std::string& directory) {
 
 void add_new_method(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand(
-        "new-method", "Write a new method, ready to build and fly: methods/NAME in a checkout of lodbench "
-                      "(and its line in methods/CMakeLists.txt), elsewhere a project of its own");
+        "new-method",
+        "Write a new method, ready to build and fly: methods/NAME in a checkout of lodbench "
+        "(and its line in methods/CMakeLists.txt), elsewhere a project of its own");
     const auto name = std::make_shared<std::string>();
     const auto directory = std::make_shared<std::string>();
     command->add_option("name", *name, "lower-case letter, then a-z, 0-9 and '-'")->required();

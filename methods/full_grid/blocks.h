@@ -16,8 +16,8 @@ namespace lodbench::full_grid {
 /// Cells along a whole block's edge: 65 x 65 vertices, so that 16-bit indices reach them all.
 inline constexpr int kBlockCells = 64;
 
-/// Number of cells of a block, columns x rows, each 1 .. kBlockCells. At most four shapes occur: whole,
-/// cut at the east edge, cut at the south edge, cut at both.
+/// Number of cells of a block, columns x rows, each 1 .. kBlockCells. At most four shapes occur:
+/// whole, cut at the east edge, cut at the south edge, cut at both.
 struct BlockShape {
     int columns = 0;
     int rows = 0;
@@ -36,8 +36,8 @@ struct Block {
     float max_height = 0;
 };
 
-/// The terrain cut into height textures ("tiles", no larger than the driver allows) and those into blocks.
-/// Tiles share their border samples, so that no block needs two textures.
+/// The terrain cut into height textures ("tiles", no larger than the driver allows) and those into
+/// blocks. Tiles share their border samples, so that no block needs two textures.
 struct Plan {
     std::vector<SampleRect> tiles;
     std::vector<BlockShape> shapes;
@@ -75,9 +75,9 @@ inline Plan make_plan(int rows, int columns, int tile_samples) {
     return plan;
 }
 
-/// Whether a camera may see a block: false only where the block's box, in double, lies wholly outside one
-/// plane of the frustum. The slack of a millionth of the distance covers the rounding of the picture's
-/// own float arithmetic, so that nothing that reaches a pixel is left out.
+/// Whether a camera may see a block: false only where the block's box, in double, lies wholly
+/// outside one plane of the frustum. The slack of a millionth of the distance covers the rounding
+/// of the picture's own float arithmetic, so that nothing that reaches a pixel is left out.
 class Visibility {
 public:
     Visibility(const Camera& camera, const TerrainInfo& terrain)
@@ -106,10 +106,11 @@ private:
     TerrainInfo terrain_;
 };
 
-/// The cells of one shape as triangles over (columns + 1) x (rows + 1) vertices, row by row. Each cell is
-/// cut from its north-west to its south-east sample, counter-clockwise seen from above. Cells are taken in
-/// bands of eight columns, from north to south: a vertex is then reused while it is still in the
-/// vertex cache (of hardware, and of a software pipeline that works in runs of about a thousand indices).
+/// The cells of one shape as triangles over (columns + 1) x (rows + 1) vertices, row by row. Each
+/// cell is cut from its north-west to its south-east sample, counter-clockwise seen from above.
+/// Cells are taken in bands of eight columns, from north to south: a vertex is then reused while it
+/// is still in the vertex cache (of hardware, and of a software pipeline that works in runs of
+/// about a thousand indices).
 inline std::vector<std::uint16_t> block_indices(BlockShape shape) {
     constexpr int kBand = 8;
     std::vector<std::uint16_t> indices;

@@ -27,8 +27,7 @@ struct Draw {
 
 class FullGrid final : public Method {
 public:
-    explicit FullGrid(const Params& params)
-        : tile_samples_(int(params.integer("tile_samples"))) {}
+    explicit FullGrid(const Params& params) : tile_samples_(int(params.integer("tile_samples"))) {}
 
     void prepare(const Terrain& terrain, gl::Device& device) override {
         terrain_ = &terrain;
@@ -37,18 +36,19 @@ public:
                           std::min(tile_samples_, device.info().max_texture_size));
     }
 
-    /// Reads each tile once, in strips of one row of blocks: what the processor holds at a time is 65 rows.
+    /// Reads each tile once, in strips of one row of blocks: what the processor holds at a time is
+    /// 65 rows.
     void upload(gl::Device& device) override {
         device_ = &device;
-        program_ = gl::Program(device, "full-grid", embedded_shaders(),
-                               {{GL_VERTEX_SHADER, "full_grid.vert"},
-                                {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
+        program_ = gl::Program(
+            device, "full-grid", embedded_shaders(),
+            {{GL_VERTEX_SHADER, "full_grid.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
         std::vector<float> strip;
         for (std::size_t i = 0; i < plan_.tiles.size(); ++i) {
             const SampleRect& tile = plan_.tiles[i];
-            gl::Texture& texture = textures_.emplace_back(
-                device, fmt::format("full-grid: heights {}", i), GL_TEXTURE_2D, GL_R32F,
-                tile.columns, tile.rows);
+            gl::Texture& texture =
+                textures_.emplace_back(device, fmt::format("full-grid: heights {}", i),
+                                       GL_TEXTURE_2D, GL_R32F, tile.columns, tile.rows);
             texture.set_parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
             texture.set_parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
             for (int row = 0; row < tile.rows - 1; row += kBlockCells) {
@@ -64,7 +64,8 @@ public:
                                 plan_.blocks.size() * sizeof(glm::ivec2));
         for (const BlockShape& shape : plan_.shapes) {
             const auto indices = block_indices(shape);
-            const std::string name = fmt::format("full-grid: block {}x{}", shape.columns, shape.rows);
+            const std::string name =
+                fmt::format("full-grid: block {}x{}", shape.columns, shape.rows);
             indices_.emplace_back(device, name, std::span<const std::uint16_t>(indices));
             gl::VertexArray& vertices = vertex_arrays_.emplace_back(device, name);
             vertices.integer_attribute(0, 2, GL_INT, instances_, 0, sizeof(glm::ivec2), 1);

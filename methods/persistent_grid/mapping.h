@@ -1,7 +1,7 @@
 #pragma once
 // The auxiliary camera and the mapping of the persistent grid onto the base plane.
-// Livny, Sokolovsky, Grinshpoun, El-Sana: Persistent Grid Mapping: A GPU-based Framework for Interactive
-// Terrain Rendering (2006), sections 3.1 and 3.2.
+// Livny, Sokolovsky, Grinshpoun, El-Sana: Persistent Grid Mapping: A GPU-based Framework for
+// Interactive Terrain Rendering (2006), sections 3.1 and 3.2.
 
 #include <algorithm>
 #include <cmath>
@@ -20,9 +20,9 @@ struct GridSize {
     int rows = 2;
 };
 
-/// The rays of the grid's vertices and the plane that they meet. The ray of vertex (column i, row j) is
-/// first + i / (columns - 1) across + j / (rows - 1) down; it always points downward, and row 0 is the
-/// one nearest to the horizon. Metres; directions in the world's axes.
+/// The rays of the grid's vertices and the plane that they meet. The ray of vertex (column i, row
+/// j) is first + i / (columns - 1) across + j / (rows - 1) down; it always points downward, and row
+/// 0 is the one nearest to the horizon. Metres; directions in the world's axes.
 struct Mapping {
     glm::dvec3 first{0.0};
     glm::dvec3 across{0.0};
@@ -36,25 +36,27 @@ struct Mapping {
     [[nodiscard]] glm::dvec3 ray(double i, double j) const { return first + i * across + j * down; }
 };
 
-/// The auxiliary camera. `base` is the height of the base plane, `margin` the part by which the grid
-/// extends beyond the picture (0.05: 5 % wider and higher), `grid` its resolution.
+/// The auxiliary camera. `base` is the height of the base plane, `margin` the part by which the
+/// grid extends beyond the picture (0.05: 5 % wider and higher), `grid` its resolution.
 ///
 /// (2)  A_aux = max(A_main, FOV / 2 + epsilon), with the extended FOV of at least 90 degrees.
 ///
 /// What the paper leaves open:
-/// - The field of view is extended whatever the pitch, so that the mapping does not jump as the camera
-///   tilts, and along the picture's vertical only: that is what reaches the ground below the viewpoint.
-/// - As long as no ray comes near the horizon, and (2) leaves the pitch alone, the auxiliary camera is the
-///   main one, its roll included. Otherwise it does not roll: it takes in the upright rectangle around the rolled picture.
-/// - A tilted camera sees the far ground narrower: its horizontal field of view is widened so that it takes
-///   in, at the lowest elevation that both share (where the ratio is greatest), all that the main one sees.
+/// - The field of view is extended whatever the pitch, so that the mapping does not jump as the
+///   camera tilts, and along the picture's vertical only: that reaches the ground below the eye.
+/// - As long as no ray comes near the horizon, and (2) leaves the pitch alone, the auxiliary camera
+///   is the main one, its roll included. Otherwise it does not roll: it takes in the upright
+///   rectangle around the rolled picture.
+/// - A tilted camera sees the far ground narrower: its horizontal field of view is widened to take
+///   in, at the lowest elevation that both share (where the ratio is greatest), all that the main
+///   one sees.
 /// - epsilon is 1e-4, or less where the terrain reaches farther than that ray would.
 /// - On or under the plane the viewpoint is taken to be one near-plane distance above it.
-inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, double base, double margin,
-                            const GridSize& grid) {
+inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, double base,
+                            double margin, const GridSize& grid) {
     constexpr double kEpsilon = 1e-4;
-    // A rolled frustum this close to the horizon is handled by the upright camera, whose rays' slopes are
-    // sums of one sign in the shader and so keep their sign in float.
+    // A rolled frustum this close to the horizon is handled by the upright camera, whose rays'
+    // slopes are sums of one sign in the shader and so keep their sign in float.
     constexpr double kHorizonGuard = 1e-3;
     Mapping mapping;
     mapping.eye_height = std::max(camera.position.z - base, camera.near_plane);
@@ -72,7 +74,8 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
     const double corner_length = std::sqrt(1 + glm::dot(tangents, tangents));
     const double main_pitch = std::atan2(-forward.z, std::hypot(forward.x, forward.y));
 
-    // The second condition matters to a rolled camera alone, whose picture's vertical is not the world's.
+    // The second condition matters to a rolled camera alone, whose picture's vertical is not the
+    // world's.
     if (highest_slope <= -kHorizonGuard * corner_length &&
         main_pitch >= std::atan(smallest_vertical)) {
         mapping.pitch = main_pitch;
@@ -82,7 +85,8 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
     } else {
         mapping.restricted = true;
         glm::dvec3 level_right(forward.y, -forward.x, 0);
-        // Straight up (or down, with a field of view near 180 degrees): the picture's own right decides.
+        // Straight up (or down, with a field of view near 180 degrees): the picture's own right
+        // decides.
         if (glm::length(level_right) < 1e-9) level_right = {right.x, right.y, 0};
         level_right = glm::normalize(level_right);
         const glm::dvec3 ahead(-level_right.y, level_right.x, 0);
@@ -99,7 +103,8 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
         // The width of the horizon is what an upward camera needs of the ground.
         const double level_pitch = std::max(main_pitch, 0.0);
         const double shared = std::max(epsilon, level_pitch - std::atan(upright.y));
-        tangents.x *= std::max(1.0, std::cos(shared - level_pitch) / std::cos(shared - mapping.pitch));
+        tangents.x *=
+            std::max(1.0, std::cos(shared - level_pitch) / std::cos(shared - mapping.pitch));
 
         const double sine = std::sin(mapping.pitch), cosine = std::cos(mapping.pitch);
         const glm::dvec3 aux_up = sine * ahead + glm::dvec3(0, 0, cosine);
@@ -111,15 +116,15 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
     }
     // The farthest neighbour decides the level of detail: the wider of the two steps.
     const double steepest = 1.5;  // radians: keeps cos(alpha) positive on the coarsest grids
-    mapping.ray_angle = std::min(
-        steepest, std::max(2 * std::atan(tangents.x) / (grid.columns - 1),
-                           2 * std::atan(tangents.y) / (grid.rows - 1)));
+    mapping.ray_angle = std::min(steepest, std::max(2 * std::atan(tangents.x) / (grid.columns - 1),
+                                                    2 * std::atan(tangents.y) / (grid.rows - 1)));
     return mapping;
 }
 
-/// Where a ray meets the base plane, horizontally relative to the viewpoint: equation (1), as the shader
-/// has it. Beyond the terrain's farthest place D the distance q is compressed to D (2 - D / q): finite
-/// for every ray, exact wherever there is terrain, and growing all the way, so that no triangle folds over.
+/// Where a ray meets the base plane, horizontally relative to the viewpoint: equation (1), as the
+/// shader has it. Beyond the terrain's farthest place D the distance q is compressed to D (2 - D /
+/// q): finite for every ray, exact wherever there is terrain, and growing all the way, so that no
+/// triangle folds over.
 inline glm::dvec2 ground_point(const Mapping& mapping, const glm::dvec3& ray) {
     const glm::dvec2 horizontal(ray);
     const double distance = glm::length(horizontal) * mapping.eye_height / -ray.z;

@@ -1,6 +1,6 @@
-// pgm: a grid over the screen, mapped by the vertex shader onto the terrain; no tree, no error metric.
-// Yotam Livny, Neta Sokolovsky, Tal Grinshpoun, Jihad El-Sana: Persistent Grid Mapping: A GPU-based
-// Framework for Interactive Terrain Rendering (2006). In core. Deviations: see README.md.
+// pgm: a grid over the screen, mapped by the vertex shader onto the terrain; no tree, no error
+// metric. Yotam Livny, Neta Sokolovsky, Tal Grinshpoun, Jihad El-Sana: Persistent Grid Mapping: A
+// GPU-based Framework for Interactive Terrain Rendering (2006). In core. Deviations: see README.md.
 
 #include <fmt/format.h>
 
@@ -33,8 +33,9 @@ constexpr std::size_t kMaximumLevels = 24;
 static_assert(offsetof(MappingBlock, levels) == kLevelsOffset &&
               sizeof(MappingBlock) == kLevelsOffset + 16 * kMaximumLevels);
 
-/// Two triangles a cell, in bands of eight columns from the horizon downward, so that a vertex is reused
-/// while it is still in the vertex cache. Neighbours share vertices by index, hence to the bit.
+/// Two triangles a cell, in bands of eight columns from the horizon downward, so that a vertex is
+/// reused while it is still in the vertex cache. Neighbours share vertices by index, hence to the
+/// bit.
 std::vector<std::uint32_t> grid_indices(const GridSize& grid) {
     constexpr int kBand = 8;
     std::vector<std::uint32_t> indices;
@@ -58,8 +59,9 @@ GridSize grid_size(const Params& params) {
     const int rows = int(params.integer("grid"));
     const double columns = std::max(2.0, std::round(rows * params.real("aspect")));
     if (columns * rows > kMaximumVertices) {
-        throw InputError(fmt::format("grid = {} with aspect = {} makes {} vertices, more than {}; lower one",
-                                     rows, params.real("aspect"), columns * rows, kMaximumVertices));
+        throw InputError(
+            fmt::format("grid = {} with aspect = {} makes {} vertices, more than {}; lower one",
+                        rows, params.real("aspect"), columns * rows, kMaximumVertices));
     }
     return {int(columns), rows};
 }
@@ -76,10 +78,11 @@ public:
         info_ = terrain.info();
         const int limit = device.info().max_texture_size;
         if (info_.columns > limit || info_.rows > limit) {
-            throw EnvironmentError(fmt::format(
-                "pgm holds the whole terrain in one texture: {} x {} samples are more than the {} x {} "
-                "that this driver allows; use a smaller terrain",
-                info_.columns, info_.rows, limit, limit));
+            throw EnvironmentError(
+                fmt::format("pgm holds the whole terrain in one texture: {} x {} samples are more "
+                            "than the {} x {} "
+                            "that this driver allows; use a smaller terrain",
+                            info_.columns, info_.rows, limit, limit));
         }
         Level finest{info_.columns, info_.rows, {}};
         finest.heights.resize(std::size_t(info_.columns) * std::size_t(info_.rows));
@@ -182,7 +185,8 @@ private:
 };
 
 constexpr ParamSpec kParams[] = {
-    integer_param("grid", 240, 2, 2048, "rows of the grid: vertices from top to bottom of the picture"),
+    integer_param("grid", 240, 2, 2048,
+                  "rows of the grid: vertices from top to bottom of the picture"),
     real_param("aspect", 4.0 / 3.0, 0.05, 20, "columns of the grid per row (150x600: 0.25)"),
     real_param("margin", 0.05, 0, 1, "part by which the grid extends beyond the picture"),
     choice_param("base", "zero", "zero|minimum-near",
@@ -192,8 +196,9 @@ constexpr ParamSpec kParams[] = {
 constexpr MethodDescriptor kMethods[] = {
     {.id = "pgm",
      .title = "Persistent grid mapping: a screen grid mapped onto the terrain by the GPU",
-     .citation = "Yotam Livny, Neta Sokolovsky, Tal Grinshpoun, Jihad El-Sana (2006): Persistent Grid "
-                 "Mapping: A GPU-based Framework for Interactive Terrain Rendering",
+     .citation =
+         "Yotam Livny, Neta Sokolovsky, Tal Grinshpoun, Jihad El-Sana (2006): Persistent Grid "
+         "Mapping: A GPU-based Framework for Interactive Terrain Rendering",
      .version = "1",
      .capabilities = 0,
      .gl_extensions = nullptr,

@@ -23,11 +23,11 @@ struct Level {
     }
 };
 
-/// Half the resolution: each texel is the mean of four, and the size is rounded up. Where a size is odd,
-/// the last row or column has no partner and stands in for it (edge replication).
+/// Half the resolution: each texel is the mean of four, and the size is rounded up. Where a size is
+/// odd, the last row or column has no partner and stands in for it (edge replication).
 ///
-/// Averaging moves the texels: texel k of level l stands at (k + 1/2) 2^l - 1/2 in units of samples, the
-/// middle of the 2^l samples that it covers, and not on sample k 2^l.
+/// Averaging moves the texels: texel k of level l stands at (k + 1/2) 2^l - 1/2 in units of
+/// samples, the middle of the 2^l samples that it covers, and not on sample k 2^l.
 inline Level half_resolution(const Level& fine) {
     Level coarse{(fine.columns + 1) / 2, (fine.rows + 1) / 2, {}};
     coarse.heights.reserve(std::size_t(coarse.columns) * std::size_t(coarse.rows));
@@ -54,10 +54,12 @@ inline std::vector<Level> make_pyramid(Level finest) {
     return levels;
 }
 
-/// Where each level from 1 up lies in the texture that holds them together: level 1 in the north-west
-/// corner, all others below each other at its east side. (Mipmaps of OpenGL round sizes down.)
+/// Where each level from 1 up lies in the texture that holds them together: level 1 in the
+/// north-west corner, all others below each other at its east side. (Mipmaps of OpenGL round sizes
+/// down.)
 struct AtlasLayout {
-    std::vector<glm::ivec2> origins;  ///< one a level; of level 0, which has its own texture, (0, 0)
+    std::vector<glm::ivec2>
+        origins;  ///< one a level; of level 0, which has its own texture, (0, 0)
     glm::ivec2 size{1};
 };
 inline AtlasLayout atlas_layout(const std::vector<Level>& levels) {
@@ -75,11 +77,13 @@ inline AtlasLayout atlas_layout(const std::vector<Level>& levels) {
     return layout;
 }
 
-/// Lowest heights of the surroundings, for the option base = "minimum-near" (absent from the paper).
+/// Lowest heights of the surroundings, for the option base = "minimum-near" (absent from the
+/// paper).
 ///
-/// The terrain is divided into tiles of 64 x 64 samples; a tile's node, at its centre, holds the lowest
-/// height of the tile and its eight neighbours, and between nodes the value is bilinear. So the plane
-/// moves continuously with the viewpoint, and never lies above the ground of the viewpoint's own tile.
+/// The terrain is divided into tiles of 64 x 64 samples; a tile's node, at its centre, holds the
+/// lowest height of the tile and its eight neighbours, and between nodes the value is bilinear. So
+/// the plane moves continuously with the viewpoint, and never lies above the ground of the
+/// viewpoint's own tile.
 class LocalMinimum {
 public:
     static constexpr int kTileSamples = 64;
@@ -99,7 +103,8 @@ public:
             for (int column = 0; column < columns_; ++column) {
                 float& node = nodes_[index(row, column)];
                 for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r) {
-                    for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns_ - 1); ++c) {
+                    for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns_ - 1);
+                         ++c) {
                         node = std::min(node, lowest[index(r, c)]);
                     }
                 }
@@ -110,7 +115,8 @@ public:
     /// At a place in units of samples (x: column, y: row); outside the grid that of its edge.
     [[nodiscard]] double at(const glm::dvec2& place) const {
         const glm::dvec2 last(columns_ - 1, rows_ - 1);
-        const glm::dvec2 node = glm::clamp((place + 0.5) / double(kTileSamples) - 0.5, glm::dvec2(0), last);
+        const glm::dvec2 node =
+            glm::clamp((place + 0.5) / double(kTileSamples) - 0.5, glm::dvec2(0), last);
         const int column = int(node.x), row = int(node.y);
         const int east = std::min(column + 1, columns_ - 1), south = std::min(row + 1, rows_ - 1);
         const glm::dvec2 t = node - glm::dvec2(column, row);

@@ -1,13 +1,14 @@
-// The smallest method: every `step`-th sample of the terrain as one regular grid, whatever the camera.
-// Cite the paper here (authors, title, year), and say on the line where the code departs from it.
+// The smallest method: every `step`-th sample of the terrain as one regular grid, whatever the
+// camera. Cite the paper here (authors, title, year), and say on the line where the code departs
+// from it.
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "api/method.h"            // the whole interface, with the rules of each call
-#include "gl/device.h"             // draw calls go through the device: it counts and captures them
-#include "gl/embedded_shaders.h"   // the shaders that CMakeLists.txt names
+#include "api/method.h"           // the whole interface, with the rules of each call
+#include "gl/device.h"            // draw calls go through the device: it counts and captures them
+#include "gl/embedded_shaders.h"  // the shaders that CMakeLists.txt names
 #include "gl/objects.h"
 #include "gl/program.h"
 
@@ -36,9 +37,9 @@ public:
     // GPU objects. Each has a name, which messages of the driver will quote.
     void upload(lodbench::gl::Device& device) override {
         device_ = &device;
-        program_ = lodbench::gl::Program(
-            device, "template_method", lodbench::embedded_shaders(),
-            {{GL_VERTEX_SHADER, "template_method.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
+        program_ = lodbench::gl::Program(device, "template_method", lodbench::embedded_shaders(),
+                                         {{GL_VERTEX_SHADER, "template_method.vert"},
+                                          {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
         // One height a vertex; the shader knows the rest from the vertex's number.
         height_buffer_ = lodbench::gl::Buffer(device, "template_method: heights",
                                               std::span<const float>(heights_));
@@ -58,19 +59,20 @@ public:
         vertices_.elements(index_buffer_);
     }
 
-    // Each frame: decide what to draw for this camera, and leave it so until the next call. A real method
-    // chooses its level of detail here; this one draws the same grid always.
+    // Each frame: decide what to draw for this camera, and leave it so until the next call. A real
+    // method chooses its level of detail here; this one draws the same grid always.
     void select(const lodbench::Camera&, const lodbench::Clock&) override {}
 
-    // Draw what was selected. The view may differ from the selected camera: only the `Frame` block, which
-    // the shaders of common/ use, may depend on it.
+    // Draw what was selected. The view may differ from the selected camera: only the `Frame` block,
+    // which the shaders of common/ use, may depend on it.
     void draw(const lodbench::View&) override {
         program_.set("step_samples", step_);
         program_.set("grid_columns", grid_columns_);
         device_->draw_elements(program_, vertices_, GL_TRIANGLES, index_count_, GL_UNSIGNED_INT);
     }
 
-    // Figures of the last frame that only the method knows; triangles and bytes are counted for you.
+    // Figures of the last frame that only the method knows; triangles and bytes are counted for
+    // you.
     [[nodiscard]] lodbench::Counters counters() const override {
         return {{"grid_vertices", double(grid_rows_) * grid_columns_}};
     }
@@ -94,8 +96,8 @@ private:
     GLsizei index_count_ = 0;
 };
 
-constexpr lodbench::ParamSpec kParams[] = {
-    lodbench::integer_param("step", 8, 1, 1024, "samples between two vertices; 1 draws every sample")};
+constexpr lodbench::ParamSpec kParams[] = {lodbench::integer_param(
+    "step", 8, 1, 1024, "samples between two vertices; 1 draws every sample")};
 
 constexpr lodbench::MethodDescriptor kMethods[] = {
     {.id = "template",

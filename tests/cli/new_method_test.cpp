@@ -36,8 +36,8 @@ protected:
     void TearDown() override { fs::remove_all(folder_); }
 
     [[nodiscard]] Outcome run(const std::string& arguments) const {
-        const std::string command =
-            "cd '" + folder_.string() + "' && " LODBENCH_BINARY " new-method " + arguments + " 2>&1";
+        const std::string command = "cd '" + folder_.string() +
+                                    "' && " LODBENCH_BINARY " new-method " + arguments + " 2>&1";
         Outcome outcome;
         FILE* pipe = popen(command.c_str(), "r");
         if (pipe == nullptr) return outcome;
@@ -65,8 +65,9 @@ TEST_F(NewMethod, writes_a_project_of_its_own_outside_a_checkout) {
     EXPECT_EQ(read(project / "README.md").substr(0, 12), "# two-words\n");
     const std::string list = read(project / "CMakeLists.txt");
     EXPECT_NE(list.find("project(two_words"), std::string::npos);
-    EXPECT_NE(list.find("lodbench_add_method(two_words SOURCES two_words.cpp SHADERS two_words.vert)"),
-              std::string::npos);
+    EXPECT_NE(
+        list.find("lodbench_add_method(two_words SOURCES two_words.cpp SHADERS two_words.vert)"),
+        std::string::npos);
     for (const auto& entry : fs::directory_iterator(project)) {
         const std::string text = read(entry.path());
         EXPECT_EQ(text.find("template_method"), std::string::npos) << entry.path();
@@ -77,7 +78,8 @@ TEST_F(NewMethod, writes_a_project_of_its_own_outside_a_checkout) {
     EXPECT_NE(outcome.output.find("cmake --build two-words/build"), std::string::npos);
     EXPECT_NE(outcome.output.find("run --plugin-dir two-words/build --method two-words"),
               std::string::npos);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "something unfinished is left";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1)
+        << "something unfinished is left";
 }
 
 TEST_F(NewMethod, adds_a_room_and_one_line_in_a_checkout) {

@@ -31,20 +31,24 @@ void add_triangle(const measure::CapturedSurface& surface, std::size_t first,
         const double tolerance = 4 * 6e-8 * glm::length(vertex - surface.origin) + 1e-9;
         const glm::dvec2 exact = info.position(samples[k].y, samples[k].x);
         ASSERT_LE(glm::length(glm::dvec2(vertex) - exact), tolerance);
-        const double height = terrain.samples()[std::size_t(samples[k].y) * std::size_t(info.columns) +
-                                                std::size_t(samples[k].x)];
+        const double height =
+            terrain.samples()[std::size_t(samples[k].y) * std::size_t(info.columns) +
+                              std::size_t(samples[k].x)];
         ASSERT_NEAR(vertex.z, height, tolerance);
     }
     const glm::ivec2 nw = samples[0];
-    const bool south_west = samples[1] == nw + glm::ivec2(0, 1) && samples[2] == nw + glm::ivec2(1, 1);
-    const bool north_east = samples[1] == nw + glm::ivec2(1, 1) && samples[2] == nw + glm::ivec2(1, 0);
+    const bool south_west =
+        samples[1] == nw + glm::ivec2(0, 1) && samples[2] == nw + glm::ivec2(1, 1);
+    const bool north_east =
+        samples[1] == nw + glm::ivec2(1, 1) && samples[2] == nw + glm::ivec2(1, 0);
     ASSERT_TRUE(south_west || north_east);
     cells.insert({nw.y, nw.x, south_west ? 0 : 1});
 }
 
 Cells captured_cells(const measure::CapturedSurface& surface, const terrain::HeightField& terrain) {
     Cells cells;
-    for (std::size_t i = 0; i < surface.vertices.size() && !::testing::Test::HasFatalFailure(); i += 3) {
+    for (std::size_t i = 0; i < surface.vertices.size() && !::testing::Test::HasFatalFailure();
+         i += 3) {
         add_triangle(surface, i, terrain, cells);
     }
     return cells;
@@ -56,7 +60,8 @@ Camera above_centre(const TerrainInfo& info) {
 }
 
 TEST(FullGridSurface, is_every_sample_to_float_rounding_with_two_triangles_a_cell) {
-    for (const auto& [rows, columns] : {std::pair{2, 2}, {65, 65}, {66, 130}, {129, 100}, {3, 200}}) {
+    for (const auto& [rows, columns] :
+         {std::pair{2, 2}, {65, 65}, {66, 130}, {129, 100}, {3, 200}}) {
         const auto terrain = hills(rows, columns);
         Flight flight(terrain, "full_grid", "full-grid");
         const auto surface = flight.surface(above_centre(terrain->info()));
@@ -94,21 +99,24 @@ TEST(FullGridSurface, lacks_nothing_in_view_and_counts_what_its_blocks_imply) {
     for (int trial = 0; trial < 60; ++trial) {
         const glm::dvec3 position(info.origin.x + uniform(-500, 2400),
                                   info.origin.y + uniform(-500, 3700), uniform(0, 1500));
-        const Camera camera = camera_at(position, uniform(0, 360), uniform(-90, 60), uniform(-180, 180),
-                                        uniform(5, 120));
+        const Camera camera = camera_at(position, uniform(0, 360), uniform(-90, 60),
+                                        uniform(-180, 180), uniform(5, 120));
         const auto surface = flight.surface(camera);
-        EXPECT_EQ(surface.triangle_count(), std::size_t(flight.counter("blocks_visible")) * 2 * 64 * 64);
+        EXPECT_EQ(surface.triangle_count(),
+                  std::size_t(flight.counter("blocks_visible")) * 2 * 64 * 64);
         EXPECT_EQ(flight.stage().count_primitives(), surface.triangle_count());
         partly += surface.triangle_count() > 0 && surface.triangle_count() < 12U * 2 * 64 * 64;
         std::vector<bool> drawn(std::size_t(info.rows) * std::size_t(info.columns));
         for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
             const glm::dvec2 place = (glm::dvec2(surface.world(i)) - info.origin) / info.spacing;
             const int row = info.rows - 1 - int(std::lround(place.y));
-            drawn[std::size_t(row) * std::size_t(info.columns) + std::size_t(std::lround(place.x))] = true;
+            drawn[std::size_t(row) * std::size_t(info.columns) +
+                  std::size_t(std::lround(place.x))] = true;
         }
         for (int row = 0; row < info.rows; ++row) {
             for (int column = 0; column < info.columns; ++column) {
-                const std::size_t i = std::size_t(row) * std::size_t(info.columns) + std::size_t(column);
+                const std::size_t i =
+                    std::size_t(row) * std::size_t(info.columns) + std::size_t(column);
                 const auto pixel =
                     camera.project({info.position(row, column), terrain->samples()[i]});
                 if (!pixel || pixel->x < 0 || pixel->y < 0 || pixel->x > camera.viewport.width ||

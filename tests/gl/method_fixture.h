@@ -12,8 +12,8 @@
 
 namespace lodbench::test {
 
-/// Rolling hills, 100 m +- 60 m high, of waves longer than eight samples, so that a surface through half of
-/// the samples is still close. World origin off zero, spacing different along the axes.
+/// Rolling hills, 100 m +- 60 m high, of waves longer than eight samples, so that a surface through
+/// half of the samples is still close. World origin off zero, spacing different along the axes.
 inline std::shared_ptr<const terrain::HeightField> hills(int rows, int columns) {
     TerrainInfo info;
     info.name = "hills";
@@ -52,8 +52,8 @@ inline Camera camera_at(const glm::dvec3& position, double heading, double pitch
     const glm::dvec3 up = -std::sin(p) * ahead + glm::dvec3(0, 0, std::cos(p));
     Camera camera;
     camera.position = position;
-    camera.orientation = Camera::look(forward, up) *
-                         glm::angleAxis(-roll * kDegree, glm::dvec3(0, 0, 1));
+    camera.orientation =
+        Camera::look(forward, up) * glm::angleAxis(-roll * kDegree, glm::dvec3(0, 0, 1));
     camera.vertical_fov = vertical_fov * kDegree;
     camera.viewport = {160, 120};
     return camera;
@@ -65,8 +65,9 @@ public:
     Flight(std::shared_ptr<const terrain::HeightField> terrain, const std::string& plugin,
            const std::string& method,
            const std::vector<std::pair<std::string, std::string>>& settings = {})
-        : stage_({terrain, std::string(LODBENCH_PLUGINS) + "/" + plugin + ".so", method, settings, ""},
-                 signs_) {
+        : stage_(
+              {terrain, std::string(LODBENCH_PLUGINS) + "/" + plugin + ".so", method, settings, ""},
+              signs_) {
         stage_.check_state(true);
         stage_.prepare();
         stage_.upload();

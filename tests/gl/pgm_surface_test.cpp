@@ -20,7 +20,8 @@ using persistent_grid::Mapping;
 
 constexpr GridSize kGrid{40, 30};
 constexpr double kMargin = 0.05;
-const std::vector<std::pair<std::string, std::string>> kSettings = {{"grid", "30"}, {"aspect", "1.3333"}};
+const std::vector<std::pair<std::string, std::string>> kSettings = {{"grid", "30"},
+                                                                    {"aspect", "1.3333"}};
 
 struct NamedCamera {
     const char* name;
@@ -52,14 +53,15 @@ std::vector<NamedCamera> cameras(const TerrainInfo& info) {
             {"wide", camera_at({centre, 400}, 30, -3, 0, 120)}};
 }
 
-/// The grid's vertices by (row, column), from the triangles: cells come in bands of eight columns, each cell
-/// as (far left, near left, near right), (far left, near right, far right).
+/// The grid's vertices by (row, column), from the triangles: cells come in bands of eight columns,
+/// each cell as (far left, near left, near right), (far left, near right, far right).
 std::vector<glm::vec3> grid_vertices(const measure::CapturedSurface& surface) {
     std::vector<glm::vec3> vertices(std::size_t(kGrid.columns * kGrid.rows));
     std::size_t next = 0;
     for (int band = 0; band < kGrid.columns - 1; band += 8) {
         for (int row = 0; row < kGrid.rows - 1; ++row) {
-            for (int column = band; column < std::min(band + 8, kGrid.columns - 1); ++column, next += 6) {
+            for (int column = band; column < std::min(band + 8, kGrid.columns - 1);
+                 ++column, next += 6) {
                 const std::size_t far_left = std::size_t(row * kGrid.columns + column);
                 const std::size_t near_left = far_left + std::size_t(kGrid.columns);
                 vertices[far_left] = surface.vertices[next];
@@ -81,10 +83,12 @@ protected:
 TEST_F(PgmSurface, is_finite_and_has_the_same_number_of_triangles_for_every_camera) {
     for (const auto& [name, camera] : cameras(terrain_->info())) {
         const auto surface = flight_.surface(camera);
-        EXPECT_EQ(surface.triangle_count(), std::size_t(2 * (kGrid.columns - 1) * (kGrid.rows - 1))) << name;
+        EXPECT_EQ(surface.triangle_count(), std::size_t(2 * (kGrid.columns - 1) * (kGrid.rows - 1)))
+            << name;
         EXPECT_EQ(flight_.stage().count_primitives(), surface.triangle_count()) << name;
         for (const glm::vec3& vertex : surface.vertices) {
-            ASSERT_TRUE(std::isfinite(vertex.x) && std::isfinite(vertex.y) && std::isfinite(vertex.z))
+            ASSERT_TRUE(std::isfinite(vertex.x) && std::isfinite(vertex.y) &&
+                        std::isfinite(vertex.z))
                 << name;
             const float height = float(vertex.z + surface.origin.z);
             ASSERT_GE(height, terrain_->info().min_height - 0.01F) << name;
@@ -104,8 +108,9 @@ TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
                                                    double(row) / (kGrid.rows - 1));
                 const glm::dvec2 expected = persistent_grid::ground_point(mapping, ray);
                 const glm::dvec2 found(vertices[std::size_t(row * kGrid.columns + column)]);
-                // A ray's components carry a few roundings of the sum they come from; the slope divides.
-                // Where its parts have one sign (the restricted camera) the slope does not cancel.
+                // A ray's components carry a few roundings of the sum they come from; the slope
+                // divides. Where its parts have one sign (the restricted camera) the slope does not
+                // cancel.
                 const double sum = glm::length(mapping.first) + glm::length(mapping.across) +
                                    glm::length(mapping.down);
                 const double relative = mapping.restricted ? 1e-6 : 3e-7 * sum / -ray.z;
@@ -147,7 +152,8 @@ TEST(PgmHeights, are_those_of_equations_3_and_4) {
                 const glm::dvec3 world = surface.origin + glm::dvec3(vertex);
                 const double q = glm::length(glm::dvec2(vertex)), h = mapping.eye_height;
                 if (q > mapping.far_distance * 0.999) continue;
-                const double denominator = h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle);
+                const double denominator =
+                    h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle);
                 const double r = denominator > 0
                                      ? (q * q + h * h) * std::sin(mapping.ray_angle) / denominator
                                      : 1e9;
@@ -162,12 +168,13 @@ TEST(PgmHeights, are_those_of_equations_3_and_4) {
                 double expected = level_height(levels[std::size_t(l)], l, place);
                 if (parent && l < last) {
                     const double weight = std::clamp(fraction - 1, 0.0, 1.0);
-                    expected = glm::mix(expected,
-                                        level_height(levels[std::size_t(l + 1)], l + 1, place), weight);
+                    expected = glm::mix(
+                        expected, level_height(levels[std::size_t(l + 1)], l + 1, place), weight);
                 }
                 ++levels_seen[l];
-                // Float weights and heights of 160 m: 1e-5 m each; where the next ray barely meets the plane,
-                // the rounding of q in (3) is magnified, on hills of at most 120 m between levels.
+                // Float weights and heights of 160 m: 1e-5 m each; where the next ray barely meets
+                // the plane, the rounding of q in (3) is magnified, on hills of at most 120 m
+                // between levels.
                 const double magnified =
                     denominator > 0 ? 1e-6 * (h + q) / denominator * fraction * 120 : 0;
                 ASSERT_NEAR(world.z, expected, 2e-3 + magnified) << name << ", level " << l;
@@ -189,7 +196,8 @@ TEST_F(PgmSurface, neighbouring_triangles_share_their_vertices_to_the_bit) {
         std::map<std::pair<Bits, Bits>, int> edges;
         for (std::size_t i = 0; i < surface.vertices.size(); i += 3) {
             for (std::size_t k = 0; k < 3; ++k) {
-                const Bits a = bits(surface.vertices[i + k]), b = bits(surface.vertices[i + (k + 1) % 3]);
+                const Bits a = bits(surface.vertices[i + k]),
+                           b = bits(surface.vertices[i + (k + 1) % 3]);
                 ASSERT_NE(a, b) << name;
                 ++edges[std::minmax(a, b)];
             }
@@ -207,7 +215,8 @@ TEST_F(PgmSurface, no_triangle_folds_over_in_plan) {
     for (const auto& [name, camera] : cameras(terrain_->info())) {
         const auto surface = flight_.surface(camera);
         for (std::size_t i = 0; i < surface.vertices.size(); i += 3) {
-            const glm::dvec2 a(surface.vertices[i]), b(surface.vertices[i + 1]), c(surface.vertices[i + 2]);
+            const glm::dvec2 a(surface.vertices[i]), b(surface.vertices[i + 1]),
+                c(surface.vertices[i + 2]);
             const glm::dvec2 u = b - a, v = c - a;
             // All the same way round, up to the rounding of thin triangles.
             ASSERT_GT(u.x * v.y - u.y * v.x, -1e-5 * glm::length(u) * glm::length(v))

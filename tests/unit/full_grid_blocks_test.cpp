@@ -86,8 +86,9 @@ TEST(FullGridBlocks, culling_never_loses_a_block_with_a_point_in_view) {
         Camera camera;
         camera.viewport = {320, 240};
         camera.vertical_fov = uniform(5, 120) * 0.017453292519943295;
-        camera.position = glm::dvec3(terrain.origin, 0) +
-                          glm::dvec3(uniform(-3000, 13000), uniform(-3000, 8000), uniform(-100, 3000));
+        camera.position =
+            glm::dvec3(terrain.origin, 0) +
+            glm::dvec3(uniform(-3000, 13000), uniform(-3000, 8000), uniform(-100, 3000));
         camera.orientation = glm::normalize(
             glm::dquat(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
         const Visibility visibility(camera, terrain);
@@ -100,16 +101,17 @@ TEST(FullGridBlocks, culling_never_loses_a_block_with_a_point_in_view) {
             ++culled;
             for (int k = 0; k < 20; ++k) {
                 const glm::dvec3 point(
-                    terrain.origin.x + terrain.spacing.x * (block.column + uniform(0, shape.columns)),
-                    terrain.origin.y + terrain.spacing.y * (terrain.rows - 1 - block.row -
-                                                            uniform(0, shape.rows)),
+                    terrain.origin.x +
+                        terrain.spacing.x * (block.column + uniform(0, shape.columns)),
+                    terrain.origin.y +
+                        terrain.spacing.y * (terrain.rows - 1 - block.row - uniform(0, shape.rows)),
                     uniform(block.min_height, block.max_height));
                 const auto pixel = camera.project(point);
                 const bool in_picture = pixel && pixel->x >= 0 && pixel->y >= 0 &&
                                         pixel->x <= camera.viewport.width &&
                                         pixel->y <= camera.viewport.height;
-                ASSERT_FALSE(in_picture) << "trial " << trial << ", block " << block.row << ", "
-                                         << block.column;
+                ASSERT_FALSE(in_picture)
+                    << "trial " << trial << ", block " << block.row << ", " << block.column;
             }
         }
     }

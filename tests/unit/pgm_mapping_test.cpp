@@ -28,8 +28,8 @@ Camera camera_with_pitch(double degrees_below_horizon, double fov = 60) {
     const double pitch = degrees_below_horizon * kDegree;
     Camera camera;
     camera.position = {9000, 5000, 800};
-    camera.orientation = Camera::look({0, std::cos(pitch), -std::sin(pitch)},
-                                      {0, std::sin(pitch), std::cos(pitch)});
+    camera.orientation =
+        Camera::look({0, std::cos(pitch), -std::sin(pitch)}, {0, std::sin(pitch), std::cos(pitch)});
     camera.vertical_fov = fov * kDegree;
     return camera;
 }
@@ -120,7 +120,8 @@ protected:
     std::mt19937_64 random_{11};
 };
 
-TEST_F(RandomCameras, every_ray_points_downward_and_a_restricted_first_row_lies_beyond_the_terrain) {
+TEST_F(RandomCameras,
+       every_ray_points_downward_and_a_restricted_first_row_lies_beyond_the_terrain) {
     for (int trial = 0; trial < 3000; ++trial) {
         const Camera camera = next(false);
         const Mapping mapping = make_mapping(camera, terrain(), 0, uniform(0, 0.3), kGrid);
@@ -132,7 +133,8 @@ TEST_F(RandomCameras, every_ray_points_downward_and_a_restricted_first_row_lies_
             ASSERT_LE(glm::length(ground), 2 * mapping.far_distance);
         }
         if (std::asin(-camera.forward().z) < 45 * kDegree && mapping.pitch < 1.5707) {
-            ASSERT_GT(glm::length(ground_point(mapping, mapping.ray(0.5, 0))), mapping.far_distance);
+            ASSERT_GT(glm::length(ground_point(mapping, mapping.ray(0.5, 0))),
+                      mapping.far_distance);
         }
         ASSERT_GT(mapping.ray_angle, 0);
         ASSERT_LT(mapping.ray_angle, std::numbers::pi / 2);
@@ -150,7 +152,8 @@ TEST_F(RandomCameras, the_grid_covers_all_of_the_base_plane_that_is_in_view) {
             const glm::dvec3 point(uniform(info.extent_min().x, info.extent_max().x),
                                    uniform(info.extent_min().y, info.extent_max().y), 0);
             const auto pixel = camera.project(point);
-            if (!pixel || pixel->x < 0 || pixel->y < 0 || pixel->x > 640 || pixel->y > 480) continue;
+            if (!pixel || pixel->x < 0 || pixel->y < 0 || pixel->x > 640 || pixel->y > 480)
+                continue;
             if (camera.position.z < camera.near_plane) continue;
             ++in_view;
             // first + i across + j down = s (point - eye): solved for i, j and 1 / s.

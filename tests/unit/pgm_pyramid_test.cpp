@@ -64,7 +64,8 @@ TEST(PgmPyramid, texels_stand_half_a_texel_off_the_samples) {
 }
 
 TEST(PgmPyramid, atlas_keeps_levels_apart) {
-    for (const auto& [rows, columns] : {std::pair{1025, 1025}, {2, 2}, {3, 1000}, {1000, 3}, {513, 100}}) {
+    for (const auto& [rows, columns] :
+         {std::pair{1025, 1025}, {2, 2}, {3, 1000}, {1000, 3}, {513, 100}}) {
         const auto levels = make_pyramid(make_level(rows, columns, [](int, int) { return 0; }));
         const AtlasLayout layout = atlas_layout(levels);
         std::vector<int> owner(std::size_t(layout.size.x) * std::size_t(layout.size.y), 0);
@@ -108,10 +109,12 @@ TEST(PgmLocalMinimum, never_lies_above_the_ground_of_its_own_tile_and_moves_with
 }
 
 TEST(PgmLocalMinimum, is_that_of_the_edge_outside_the_terrain) {
-    const Level level = make_level(65, 65, [](int row, int column) { return row == 64 && column == 64 ? 1 : 9; });
+    const Level level =
+        make_level(65, 65, [](int row, int column) { return row == 64 && column == 64 ? 1 : 9; });
     const LocalMinimum minimum(level);
     EXPECT_EQ(minimum.at({-1e9, 1e9}), 1);
-    EXPECT_EQ(minimum.at({-1e9, -1e9}), 1);  // two tiles an axis: every tile is a neighbour of the last
+    EXPECT_EQ(minimum.at({-1e9, -1e9}),
+              1);  // two tiles an axis: every tile is a neighbour of the last
     EXPECT_EQ(LocalMinimum(make_level(500, 500, [](int r, int) { return r; })).at({1e7, 1e7}), 384);
 }
 
