@@ -13,7 +13,7 @@ namespace lodbench::test {
 namespace {
 
 constexpr int kKills = 20;
-constexpr int kRepetitions = 14;  // of two methods: more cells than the kills leave time for
+constexpr int kRepetitions = 8;  // of two methods
 
 /// The processes whose parent is `parent`.
 std::vector<pid_t> children_of(pid_t parent) {
@@ -52,9 +52,16 @@ TEST(KillAndResume, every_cell_is_there_exactly_once_after_twenty_kills) {
         broken_plugin_folder("healthy"), "--resume"};
     std::mt19937 random(2026);
     int killed_children = 0;
+    unsigned start_ms = 0;
     for (int kill_count = 0; kill_count < kKills; ++kill_count) {
+        const auto start = std::chrono::steady_clock::now();
         const pid_t parent = start_lodbench(arguments, log);
-        std::this_thread::sleep_for(std::chrono::milliseconds(random() % 700));
+        // How long a start takes here decides which moments are worth killing at.
+        while (kill_count == 0 && !fs::exists(out / "run.json") && waitpid(parent, nullptr, WNOHANG) == 0) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            start_ms = unsigned((std::chrono::steady_clock::now() - start) / std::chrono::milliseconds(1));
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(random() % (2 * start_ms + 200)));
         if (random() % 3 == 0) {
             for (const pid_t child : children_of(parent)) {
                 kill(child, SIGKILL);
