@@ -94,9 +94,6 @@ void print_line(const ValidateOptions& options, const std::string& method,
     } else {
         fmt::print("{:<8} {} {} ({:.1f} s){}{}\n", verdict, method, report.check, report.seconds,
                    report.reason.empty() ? "" : ": ", report.reason);
-        if (report.verdict == conformance::Verdict::failed) {
-            fmt::print("         again: {}\n", repeat_command(options, method, report.check));
-        }
     }
     std::fflush(stdout);
 }
@@ -137,6 +134,9 @@ int run_validate(const ValidateOptions& options) {
             failed += report.verdict == conformance::Verdict::failed;
             skipped += report.verdict == conformance::Verdict::skipped;
             print_line(options, method.id, report);
+            if (report.verdict == conformance::Verdict::failed && !options.json) {
+                fmt::print("         again: {}\n", repeat_command(options, method.id, check.name));
+            }
         }
     }
     if (!options.json) {
