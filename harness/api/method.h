@@ -97,6 +97,7 @@ enum Capability : std::uint32_t {
     kAsynchronous = 1U << 0,  ///< has background work: settle and pause/resume mean something
     kOutOfCore = 1U << 1,     ///< does not hold the whole terrain in memory
     kSkirts = 1U << 2,        ///< may draw vertical skirts
+    kExample = 1U << 3,       ///< flown only when it is named, never as one of "all methods"
 };
 
 /// Why `create` gave no method.

@@ -104,10 +104,11 @@ void write_text(const fs::path& file, const std::string& text) {
 }
 
 std::string rename_all(std::string text, const MethodName& name) {
-    const std::array<std::pair<std::string, std::string>, 4> renames = {
+    const std::array<std::pair<std::string, std::string>, 5> renames = {
         {{"template_method", name.snake_case},
          {"TemplateMethod", name.class_name},
          {"\"template\"", '"' + name.id + '"'},
+         {"lodbench::kExample", "0"},
          {"# template\n", "# " + name.id + '\n'}}};
     for (const auto& [from, to] : renames) {
         for (std::size_t at = text.find(from); at != std::string::npos;

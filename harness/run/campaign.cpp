@@ -149,6 +149,8 @@ private:
                 observer_.cell_progress(cell, index, plan_.cells.size(),
                                         total > 0 ? double(done) / double(total) : 0.0);
             });
+        if (!result.environment_error.empty()) throw EnvironmentError(result.environment_error);
+        if (!result.input_error.empty()) throw InputError(result.input_error);
         const Json::Value record =
             cell_record(cell.spec, cell.scenario, cell.params, result, scenario.measure.budget_ms);
         folder_.add_cell(cell.spec.id, record, frames_csv(result.frames));
@@ -214,9 +216,9 @@ int CampaignOutcome::exit_status() const {
             return std::ranges::any_of(wanted, [&](const char* status) { return cell["status"] == status; });
         });
     };
+    if (has_status({"failed", "crashed", "timeout"})) return kSomeFailed;
     if (!has_status({"ok"})) return kNothingMeasured;
-    if (!error.empty() || has_status({"failed", "crashed", "timeout"})) return kSomeFailed;
-    return 0;
+    return error.empty() ? 0 : kSomeFailed;
 }
 
 CampaignOutcome run_campaign(const RunRequest& request, const fs::path& program,

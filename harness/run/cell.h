@@ -49,6 +49,9 @@ struct FrameRecord {
 struct CellResult {
     CellStatus status = CellStatus::failed;
     std::string reason;  ///< names plugin and call; empty when ok
+    /// Not the method's failure: what the environment refused (no device, no disk) or what is wrong with
+    /// the input (terrain, path), in words. The campaign ends there and can be resumed; both empty else.
+    std::string environment_error, input_error;
     std::vector<FrameRecord> frames;
     double prepare_s = 0, prepare_cpu_s = 0, upload_s = 0;
     std::optional<std::uint64_t> gpu_bytes, peak_rss_bytes;
@@ -62,6 +65,7 @@ struct CellResult {
     std::string gl_vendor, gl_renderer, gl_version, device_description;
     bool software = false;
     std::string timer_verdict;
+    int warmup_frames = 0, frames_in_flight = 0;  ///< of the timing replay
 };
 
 /// Flies one cell in this process: load, prepare, timing replay, lockstep replay, shots. Throws nothing:

@@ -246,6 +246,10 @@ std::string write_result(const CellResult& result) {
     json["device_description"] = result.device_description;
     json["software"] = result.software;
     json["timer_verdict"] = result.timer_verdict;
+    json["warmup_frames"] = result.warmup_frames;
+    json["frames_in_flight"] = result.frames_in_flight;
+    json["environment_error"] = result.environment_error;
+    json["input_error"] = result.input_error;
     return report::to_text(json);
 }
 
@@ -286,6 +290,10 @@ CellResult read_result(std::string_view text, const std::string& where) {
         result.device_description = report::get_string(json, "device_description", where);
         result.software = json["software"].asBool();
         result.timer_verdict = report::get_string(json, "timer_verdict", where);
+        result.warmup_frames = int(report::get_number(json, "warmup_frames", where));
+        result.frames_in_flight = int(report::get_number(json, "frames_in_flight", where));
+        result.environment_error = report::get_string(json, "environment_error", where);
+        result.input_error = report::get_string(json, "input_error", where);
         return result;
     });
 }
@@ -337,6 +345,8 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["terrain"] = text_or_null(result.terrain_name);
     json["terrain_checksum"] = text_or_null(result.terrain_checksum);
     json["timer_verdict"] = text_or_null(result.timer_verdict);
+    json["warmup_frames"] = result.warmup_frames;
+    json["frames_in_flight"] = result.frames_in_flight;
     json["warnings"] = texts(result.warnings);
     return json;
 }

@@ -183,6 +183,8 @@ void Flight::fly_for_time() {
         }
     }
     timer.finish();
+    result_.warmup_frames = scenario_.warmup_frames;
+    result_.frames_in_flight = timer.frames_in_flight();
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         const FrameTimes& times = timer.frames()[std::size_t(frame)];
         FrameRecord& record = result_.frames[std::size_t(frame)];
@@ -270,6 +272,10 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
     } catch (const MethodSkipped& skipped) {
         result.status = CellStatus::skipped;
         result.reason = skipped.what();
+    } catch (const EnvironmentError& error) {
+        result.environment_error = error.what();
+    } catch (const InputError& error) {
+        result.input_error = error.what();
     } catch (const std::exception& error) {
         result.status = CellStatus::failed;
         result.reason = error.what() + where();

@@ -139,7 +139,10 @@ std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scena
     } else if (!scenario.methods.empty()) {
         requests = scenario.methods;
     } else {
-        for (const auto& [id, info] : methods) requests.push_back({id, {}, "scenario " + scenario.name});
+        for (const auto& [id, info] : methods) {
+            if ((info.capabilities & kExample) != 0) continue;
+            requests.push_back({id, {}, "scenario " + scenario.name});
+        }
     }
     for (scenario::MethodRequest& request : requests) {
         for (const CommandSetting& setting : command) {

@@ -1,0 +1,103 @@
+// What the harness itself adds to a frame: a method that does nothing, and `full-grid`, flown in turns over the
+// embedded scenario.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "benchmarks.h"
+#include "measure/statistics.h"
+#include "run/locations.h"
+#include "run/stage.h"
+#include "run/timing.h"
+#include "scenario/scenario.h"
+
+namespace lodbench::benchmarks {
+
+namespace {
+
+struct Flown {
+    std::vector<double> wall_ms, host_ms;
+};
+
+class Aircraft {
+public:
+    Aircraft(const scenario::Scenario& scenario, std::shared_ptr<const terrain::HeightField> terrain,
+             const std::filesystem::path& plugin, const std::string& method)
+        : scenario_(scenario),
+          path_(scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain)),
+          stage_(run::StageSetup{std::move(terrain), plugin, method, {}, ""}, signs_) {
+        stage_.prepare();
+        stage_.upload();
+        stage_.resize(scenario.viewport);
+    }
+
+    // wall: the whole frame; host: selection and submission alone, without clearing and finishing.
+    Flown fly() {
+        measure::TimerVerdict bracket;  // not trusted: every frame ends with glFinish
+        run::FrameTimer timer(stage_.device(), bracket);
+        for (int frame = 0; frame < scenario_.frames; ++frame) {
+            Camera camera;
+            camera.viewport = scenario_.viewport;
+            camera.vertical_fov = scenario_.vertical_fov;
+            camera.near_plane = scenario_.near_plane;
+            path_->place(frame, camera);
+            timer.begin_frame();
+            stage_.select(camera, {frame, frame / scenario_.rate_hz});
+            timer.end_select();
+            stage_.draw(picture_view(camera));
+            timer.end_submit();
+        }
+        timer.finish();
+        Flown flown;
+        for (const run::FrameTimes& times : timer.frames()) {
+            flown.wall_ms.push_back(times.wall_ms);
+            flown.host_ms.push_back(times.select_ms + times.submit_ms);
+        }
+        return flown;
+    }
+
+private:
+    const scenario::Scenario& scenario_;
+    run::VitalSigns signs_;
+    std::unique_ptr<scenario::FlightPath> path_;
+    run::Stage stage_;
+};
+
+double median(const std::vector<double>& values) {
+    return *measure::percentile(values, 0.5);
+}
+
+}  // namespace
+
+void harness_cost() {
+    const scenario::Scenario scenario = scenario::load_scenario(run::demo_scenario());
+    const std::shared_ptr<const terrain::HeightField> terrain =
+        terrain::load_terrain(scenario.terrain);
+    std::vector<double> nothing_wall, nothing_host, grid_wall;
+    for (int round = 0; round < 3; ++round) {
+        // One context at a time is current on a thread: each flies and goes.
+        const Flown nothing =
+            Aircraft(scenario, terrain, LODBENCH_NOTHING_PLUGIN, "nothing").fly();
+        const Flown grid = Aircraft(scenario, terrain,
+                                    run::default_plugin_folder() / "full_grid.so", "full-grid")
+                               .fly();
+        nothing_wall.insert(nothing_wall.end(), nothing.wall_ms.begin(), nothing.wall_ms.end());
+        nothing_host.insert(nothing_host.end(), nothing.host_ms.begin(), nothing.host_ms.end());
+        grid_wall.insert(grid_wall.end(), grid.wall_ms.begin(), grid.wall_ms.end());
+    }
+    const double host = median(nothing_host);
+    const double wall = median(nothing_wall);
+    const double grid = median(grid_wall);
+    fmt::print("harness, a method that does nothing, {} frames at {}x{}, medians:\n",
+               nothing_wall.size(), scenario.viewport.width, scenario.viewport.height);
+    fmt::print("  host calls per frame            {:8.1f} us   {:.3f} % of full-grid's frame\n",
+               host * 1e3, 100 * host / grid);
+    fmt::print("  with clearing and glFinish      {:8.1f} us   {:.3f} %\n", wall * 1e3,
+               100 * wall / grid);
+    fmt::print("  full-grid's frame               {:8.1f} us\n", grid * 1e3);
+}
+
+}  // namespace lodbench::benchmarks
