@@ -1,5 +1,7 @@
 #include "run/context.h"
 
+#include "run/commit.h"
+
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/utsname.h>

@@ -51,10 +51,10 @@ protected:
 ///     north  a (1 - e^2) / (1 - e^2 sin^2 phi)^(3/2)
 /// and the origin is longitude and latitude of the south-west sample times these. Projected coordinates
 /// are multiplied by the length of their unit. A sample stands at the centre of its pixel. Rotated
-/// geotransforms are refused, south-up rasters flipped. Throws InputError.
+/// geotransforms are refused, south-up rasters flipped. GDAL is loaded at the first call. Throws InputError.
 [[nodiscard]] std::unique_ptr<RasterReader> open_with_gdal(const std::filesystem::path& file);
 
-/// Images of one channel. Throws InputError.
+/// Images of one channel. OpenImageIO is loaded at the first call. Throws InputError.
 [[nodiscard]] std::unique_ptr<RasterReader> open_with_oiio(const std::filesystem::path& file);
 
 /// Raw samples, row by row from the north, as the sidecar says. Throws InputError.

@@ -1,13 +1,11 @@
 // The only file that knows OpenImageIO. The format is named by the extension, never guessed from the content,
 // so that no other of its readers gets a stranger's bytes.
 
-#include "terrain/raster_reader.h"
+#include "terrain/readers/module.h"
 
 #include <fmt/format.h>
 
 #include "api/error.h"
-
-#ifdef LODBENCH_WITH_OIIO
 
 #include <OpenImageIO/imageio.h>
 
@@ -155,23 +153,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<RasterReader> open_with_oiio(const std::filesystem::path& file) {
-    return std::make_unique<OiioReader>(file);
-}
-
 }  // namespace lodbench::terrain
 
-#else
-
-namespace lodbench::terrain {
-
-std::unique_ptr<RasterReader> open_with_oiio(const std::filesystem::path& file) {
-    throw InputError(fmt::format(
-        "{}: images are read through OpenImageIO, which this build leaves out; configure with "
-        "-DLODBENCH_WITH_OIIO=ON",
-        file.string()));
+lodbench::terrain::RasterReader* lodbench_open_raster(const std::filesystem::path& file) {
+    return new lodbench::terrain::OiioReader(file);
 }
-
-}  // namespace lodbench::terrain
-
-#endif

@@ -1,13 +1,11 @@
 // The only file that knows GDAL. Its drivers are registered one by one: those of the network, of databases
 // and of virtual files (VRT, WMS, /vsi...) are never there to be asked.
 
-#include "terrain/raster_reader.h"
+#include "terrain/readers/module.h"
 
 #include <fmt/format.h>
 
 #include "api/error.h"
-
-#ifdef LODBENCH_WITH_GDAL
 
 #include <cpl_error.h>
 #include <gdal_frmts.h>
@@ -218,23 +216,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<RasterReader> open_with_gdal(const std::filesystem::path& file) {
-    return std::make_unique<GdalReader>(file);
-}
-
 }  // namespace lodbench::terrain
 
-#else
-
-namespace lodbench::terrain {
-
-std::unique_ptr<RasterReader> open_with_gdal(const std::filesystem::path& file) {
-    throw InputError(fmt::format(
-        "{}: elevation models are read through GDAL, which this build leaves out; configure with "
-        "-DLODBENCH_WITH_GDAL=ON",
-        file.string()));
+lodbench::terrain::RasterReader* lodbench_open_raster(const std::filesystem::path& file) {
+    return new lodbench::terrain::GdalReader(file);
 }
-
-}  // namespace lodbench::terrain
-
-#endif
