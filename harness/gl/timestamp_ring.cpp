@@ -38,7 +38,7 @@ void TimestampRing::begin_frame(std::int64_t frame) {
     }
     Frame& place = frames_[current_];
     for (std::size_t i = 0; i < place.used; ++i) {
-        if (place.intervals[i].pending) ++losses_.overflows;
+        if (place.intervals[i].pending) ++(place.first ? losses_.discarded : losses_.overflows);
         place.intervals[i].pending = false;
     }
     place.frame = frame;
