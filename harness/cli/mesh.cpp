@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/isolated.h"
 #include "cli/commands.h"
-#include "conformance/isolated.h"
 #include "report/results.h"
 #include "run/locations.h"
 #include "run/mesh_export.h"
@@ -191,10 +191,10 @@ int run_mesh(const MeshOptions& options) {
     const Settings settings = settings_of(options, scenario);
     const run::MethodInfo method = find_method(options);
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
-    const conformance::Answer answer =
-        conformance::run_isolated(scenario.cell_time_limit_s,
+    const base::Answer answer =
+        base::run_isolated(scenario.cell_time_limit_s,
                                   [&] { return export_mesh(options, scenario, method, settings); });
-    using conformance::Ending;
+    using base::Ending;
     switch (answer.ending) {
         case Ending::answered: fmt::print("{}\n", answer.text); return 0;
         case Ending::refused: throw InputError(answer.text);

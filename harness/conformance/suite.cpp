@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "api/error.h"
-#include "conformance/isolated.h"
+#include "base/isolated.h"
 #include "run/stage.h"
 
 namespace lodbench::conformance {
@@ -97,24 +97,24 @@ const Check& find_check(const std::string& name) {
 
 CheckReport run_check(const Check& check, const Subject& subject, double time_factor) {
     const auto start = std::chrono::steady_clock::now();
-    const Answer answer =
-        run_isolated(check.time_limit_s * time_factor, [&] { return judge(check, subject); });
+    const base::Answer answer =
+        base::run_isolated(check.time_limit_s * time_factor, [&] { return judge(check, subject); });
     CheckReport report;
     report.check = check.name;
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report.reason = answer.text;
     switch (answer.ending) {
-        case Ending::answered:
+        case base::Ending::answered:
             report.verdict = answer.text.front() == kPassed    ? Verdict::passed
                              : answer.text.front() == kSkipped ? Verdict::skipped
                                                                : Verdict::failed;
             report.reason = answer.text.substr(1);
             break;
-        case Ending::refused: throw InputError(answer.text);
-        case Ending::no_means: report.verdict = Verdict::skipped; break;
-        case Ending::threw:
-        case Ending::died:
-        case Ending::timed_out: report.verdict = Verdict::failed; break;
+        case base::Ending::refused: throw InputError(answer.text);
+        case base::Ending::no_means: report.verdict = Verdict::skipped; break;
+        case base::Ending::threw:
+        case base::Ending::died:
+        case base::Ending::timed_out: report.verdict = Verdict::failed; break;
     }
     return report;
 }

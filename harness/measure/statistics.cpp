@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/error.h"
+#include "base/hash.h"
 
 namespace lodbench::measure {
 namespace {
@@ -72,31 +73,6 @@ double median_in_place(std::span<double> values) {
     const double below = *std::max_element(values.begin(), middle);
     return below == *middle ? below : below + (*middle - below) / 2;
 }
-
-/// The standard library's distributions differ between implementations; this generator does not.
-class SplitMix64 {
-public:
-    explicit SplitMix64(std::uint64_t seed) : state_(seed) {}
-
-    /// Uniform in [0, bound), bound > 0; the incomplete last stretch of 2^64 is drawn again.
-    std::uint64_t below(std::uint64_t bound) {
-        constexpr std::uint64_t kMax = std::numeric_limits<std::uint64_t>::max();
-        const std::uint64_t limit = kMax - kMax % bound;
-        std::uint64_t value = next();
-        while (value >= limit) value = next();
-        return value % bound;
-    }
-
-private:
-    std::uint64_t next() {
-        state_ += 0x9e3779b97f4a7c15ULL;
-        std::uint64_t z = state_;
-        z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-        z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-        return z ^ (z >> 31U);
-    }
-    std::uint64_t state_;
-};
 
 }  // namespace
 
@@ -178,7 +154,7 @@ std::optional<RunInterval> run_interval(std::span<const double> runs, std::uint6
     interval.high = *high;
     if (runs.size() < kRunsForBootstrap) return interval;
 
-    SplitMix64 random(seed);
+    base::SplitMix64 random(seed);
     std::vector<double> resample(runs.size());
     std::vector<double> medians(kResamples);
     for (double& value : medians) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 
+#include "base/hash.h"
 #include "measure/timer_verdict.h"
 #include "report/png.h"
 #include "run/cell.h"
@@ -150,10 +151,9 @@ void Flight::choose_frames() {
     shots_ = scenario_.measure.shots;
     if (shots_.empty()) shots_ = {0, scenario_.frames / 2, scenario_.frames - 1};
     // The frame whose picture is compared between the replays: by the seed, different per repetition.
-    std::uint64_t state = spec_.seed + 0x9e3779b97f4a7c15ULL * std::uint64_t(spec_.repetition + 1);
-    state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    state = (state ^ (state >> 27)) * 0x94d049bb133111ebULL;
-    hashed_frame_ = int((state ^ (state >> 31)) % std::uint64_t(scenario_.frames));
+    base::SplitMix64 random(spec_.seed);
+    random.skip(std::uint64_t(spec_.repetition));
+    hashed_frame_ = int(random.below(std::uint64_t(scenario_.frames)));
 }
 
 void Flight::fly_for_time() {

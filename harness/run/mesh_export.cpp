@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "api/error.h"
+#include "base/hash.h"
 
 namespace lodbench::run {
 
@@ -23,11 +24,8 @@ struct HashBits {
     std::size_t operator()(const Bits& bits) const {
         std::uint64_t hash = 0;
         for (const std::uint64_t word : bits) {
-            // splitmix64's finaliser: grid coordinates differ in few bits, which must reach all of the hash.
-            hash += word + 0x9e3779b97f4a7c15ULL;
-            hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ULL;
-            hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebULL;
-            hash ^= hash >> 31;
+            // Grid coordinates differ in few bits, which must reach all of the hash.
+            hash = base::mix64(hash + word);
         }
         return std::size_t(hash);
     }

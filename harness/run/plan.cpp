@@ -7,6 +7,7 @@
 #include <set>
 
 #include "api/error.h"
+#include "base/hash.h"
 #include "report/json.h"
 #include "report/results.h"
 #include "run/cell_record.h"
@@ -19,28 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
-
-/// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014; its finaliser by Stafford.
-class SplitMix64 {
-public:
-    explicit SplitMix64(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t next() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-        return z ^ (z >> 31);
-    }
-    /// In [0, bound), every value equally likely: the uneven rest of 2^64 is thrown away.
-    std::uint64_t below(std::uint64_t bound) {
-        const std::uint64_t rest = (0 - bound) % bound;
-        std::uint64_t value = next();
-        while (value < rest) value = next();
-        return value % bound;
-    }
-
-private:
-    std::uint64_t state_;
-};
 
 std::vector<std::string> split_values(const std::string& text) {
     std::vector<std::string> values(1);
@@ -93,8 +72,20 @@ const MethodInfo& find_method(const std::map<std::string, MethodInfo>& methods, 
     throw InputError(message);
 }
 
+/// Of one method over one scenario: more than anyone waits for, and few enough to hold.
+constexpr std::size_t kMostCells = 100'000;
+
 /// Every combination of one value for each parameter.
-std::vector<Settings> combinations(const scenario::MethodRequest& request) {
+std::vector<Settings> combinations(const scenario::MethodRequest& request, int repetitions) {
+    auto count = std::size_t(repetitions);
+    for (const auto& [name, values] : request.settings) {
+        count *= values.size();
+        if (count > kMostCells) {
+            throw InputError(fmt::format("{}: the lists of method '{}' and {} repetitions make more than {} "
+                                         "cells; shorten them",
+                                         request.where, request.id, repetitions, kMostCells));
+        }
+    }
     std::vector<Settings> result(1);
     for (const auto& [name, values] : request.settings) {
         std::vector<Settings> longer;
@@ -159,7 +150,7 @@ std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scena
 
 void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {
     std::ranges::stable_sort(cells, {}, [](const PlannedCell& cell) { return cell.spec.repetition; });
-    SplitMix64 random(seed);
+    base::SplitMix64 random(seed);
     for (std::size_t begin = 0; begin < cells.size();) {
         std::size_t end = begin;
         while (end < cells.size() && cells[end].spec.repetition == cells[begin].spec.repetition) ++end;
@@ -198,7 +189,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
         for (const auto& wanted : requests_of(scenario, chosen, command, methods)) {
             const MethodInfo& method = find_method(methods, wanted.id, wanted.where, plugins);
             used.insert(method.id);
-            for (const Settings& settings : combinations(wanted)) {
+            for (const Settings& settings : combinations(wanted, scenario.repetitions)) {
                 const Params params = make_params(method, settings, wanted.where);
                 for (int repetition = 0; repetition < scenario.repetitions; ++repetition) {
                     CellSpec spec;
@@ -232,7 +223,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     }
     plan.seed = request.overrides.seed.value_or(plan.scenarios.front().seed);
     interleave(plan.cells, plan.seed);
-    SplitMix64 seeds(~plan.seed);
+    base::SplitMix64 seeds(~plan.seed);
     for (PlannedCell& cell : plan.cells) cell.spec.seed = seeds.next();
     return plan;
 }

@@ -13,8 +13,8 @@
 #include <set>
 
 #include "api/error.h"
+#include "base/child_process.h"
 #include "report/json.h"
-#include "run/child_process.h"
 #include "run/loader_log.h"
 #include "run/locations.h"
 #include "run/plugin_library.h"
@@ -117,12 +117,12 @@ int tell(const fs::path& plugin, int listing, int output) {
     } catch (const InputError& error) {
         json["refusal"] = error.what();
     }
-    return write_all(listing, report::to_text(json)) ? 0 : 1;
+    return base::write_all(listing, report::to_text(json)) ? 0 : 1;
 }
 
 /// The last line that a plugin printed, for the refusal.
-std::string last_words(const FileDescriptor& output) {
-    std::string text = read_all(output);
+std::string last_words(const base::FileDescriptor& output) {
+    std::string text = base::read_all(output);
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
     const std::size_t line = text.find_last_of('\n');
     if (line != text.npos) text.erase(0, line + 1);
@@ -175,9 +175,9 @@ PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time
         loader_log("{}", result.refusal);
         return result;
     };
-    const FileDescriptor listing = memory_file("lodbench-listing");
-    const FileDescriptor output = memory_file("lodbench-output");
-    ChildProcess child([&] { return tell(plugin, listing.number(), output.number()); });
+    const base::FileDescriptor listing = base::memory_file("lodbench-listing");
+    const base::FileDescriptor output = base::memory_file("lodbench-output");
+    base::ChildProcess child([&] { return tell(plugin, listing.number(), output.number()); });
     const auto deadline = std::chrono::steady_clock::now() + time_limit;
     while (!child.wait(std::chrono::milliseconds(50))) {
         if (std::chrono::steady_clock::now() < deadline) continue;
@@ -186,7 +186,7 @@ PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time
                                   "loaded does not end",
                                   double(time_limit.count()) / 1000, last_words(output)));
     }
-    const std::string text = read_all(listing);
+    const std::string text = base::read_all(listing);
     if (!child.ending().well() || text.empty()) {
         return refuse(fmt::format("while it was loaded: {}{}; look at the constructors that run then",
                                   child.ending().words(), last_words(output)));

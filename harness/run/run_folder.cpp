@@ -38,7 +38,7 @@ void make_folder(const fs::path& path) {
 RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {
     for (const char* part : {"", "scenarios", "frames", "logs", "shots"}) make_folder(path_ / part);
     const fs::path file = path_ / ".lock";
-    lock_ = FileDescriptor(open(file.c_str(), O_RDWR | O_CREAT, 0644));
+    lock_ = base::FileDescriptor(open(file.c_str(), O_RDWR | O_CREAT, 0644));
     if (!lock_) {
         throw EnvironmentError(fmt::format("cannot write {}: {}; choose another folder with --out",
                                            file.string(), std::strerror(errno)));

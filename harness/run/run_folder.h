@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "run/child_process.h"
+#include "base/child_process.h"
+
 
 namespace lodbench::run {
 
@@ -32,7 +33,7 @@ public:
 
 private:
     std::filesystem::path path_;
-    FileDescriptor lock_;
+    base::FileDescriptor lock_;
 };
 
 }  // namespace lodbench::run

@@ -6,6 +6,7 @@
 #include <bit>
 #include <optional>
 
+#include "base/hash.h"
 #include "gl/frame_blocks.h"
 #include "gl/state.h"
 
@@ -248,11 +249,9 @@ std::vector<std::uint8_t> Stage::read_color() {
 }
 
 std::string Stage::depth_hash() {
-    std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a over 32-bit words
-    for (const float depth : read_depth()) {
-        hash = (hash ^ std::bit_cast<std::uint32_t>(depth)) * 1099511628211ULL;
-    }
-    return fmt::format("{:016x}", hash);
+    base::Fnv1a hash;
+    for (const float depth : read_depth()) hash.add(std::bit_cast<std::uint32_t>(depth));
+    return hash.hex();
 }
 
 }  // namespace lodbench::run

@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "api/error.h"
+#include "base/child_process.h"
 #include "run/cell_record.h"
-#include "run/child_process.h"
 
 namespace lodbench::run {
 
@@ -75,7 +75,7 @@ private:
 
 /// Resident bytes of a process; 0 when it is gone.
 std::uint64_t resident_bytes(pid_t pid) {
-    const FileDescriptor file(open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
+    const base::FileDescriptor file(open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
     char text[128] = {};
     if (!file || read(file.number(), text, sizeof text - 1) <= 0) return 0;
     unsigned long long total = 0;
@@ -149,10 +149,10 @@ int become_cell(const std::filesystem::path& program, int spec, int signs, int r
 
 CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::filesystem::path& program,
                     const std::filesystem::path& log_path, const CellProgress& progress) {
-    const FileDescriptor spec_file = memory_file("lodbench-spec");
-    const FileDescriptor signs_file = memory_file("lodbench-signs");
-    const FileDescriptor result_file = memory_file("lodbench-result");
-    if (!write_all(spec_file.number(), write_spec(spec)) ||
+    const base::FileDescriptor spec_file = base::memory_file("lodbench-spec");
+    const base::FileDescriptor signs_file = base::memory_file("lodbench-signs");
+    const base::FileDescriptor result_file = base::memory_file("lodbench-result");
+    if (!base::write_all(spec_file.number(), write_spec(spec)) ||
         ftruncate(signs_file.number(), sizeof(VitalSigns)) != 0) {
         throw EnvironmentError(fmt::format("cannot share memory with a child: {}", std::strerror(errno)));
     }
@@ -162,13 +162,13 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::f
     if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
         throw EnvironmentError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
     }
-    const FileDescriptor reading(ends[0]);
-    FileDescriptor writing(ends[1]);
+    const base::FileDescriptor reading(ends[0]);
+    base::FileDescriptor writing(ends[1]);
 
     const std::string plugin = spec.plugin.filename().string();
     Log log(log_path);
     const auto start = SteadyClock::now();
-    ChildProcess child([&] {
+    base::ChildProcess child([&] {
         fcntl(writing.number(), F_SETFL, 0);  // a plugin that prints much waits, it does not lose
         return become_cell(program, spec_file.number(), signs_file.number(), result_file.number(),
                            writing.number());
@@ -216,8 +216,8 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::f
     }
     log.drain(reading.number());
 
-    const Ending& ending = child.ending();
-    const std::string text = read_all(result_file);
+    const base::ChildEnding& ending = child.ending();
+    const std::string text = base::read_all(result_file);
     if (signs->finished.load() == 1 && !text.empty()) {
         CellResult result;
         try {
@@ -241,12 +241,12 @@ int serve_cell(int spec_descriptor, int signs_descriptor, int result_descriptor)
     signs->enter(Call::start);
     CellSpec spec;
     {
-        const FileDescriptor file(spec_descriptor);
-        spec = read_spec(read_all(file), "specification of a cell");
+        const base::FileDescriptor file(spec_descriptor);
+        spec = read_spec(base::read_all(file), "specification of a cell");
     }
     const CellResult result = fly_cell(spec, *signs);
     signs->enter(Call::write_results);
-    if (!write_all(result_descriptor, write_result(result))) return 1;
+    if (!base::write_all(result_descriptor, write_result(result))) return 1;
     signs->finished.store(1);
     return 0;
 }

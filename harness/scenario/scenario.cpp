@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "api/error.h"
-#include "scenario/child_rehearsal.h"
+#include "base/isolated.h"
 #include "scenario/flight_section.h"
 #include "scenario/printable.h"
 #include "scenario/toml_section.h"
@@ -25,6 +25,7 @@ constexpr int kMaxSide = 65537;    // samples of a synthetic terrain
 constexpr int kMaxRepetitions = 1000;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::size_t kMaxSweptValues = 1000;
+constexpr double kRehearsalSeconds = 20;
 
 bool is_name(std::string_view text, bool lower_case_only) {
     return !text.empty() && text.size() <= kMaxNameBytes &&
@@ -256,12 +257,16 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
 
 Scenario load_scenario(const std::filesystem::path& file) {
     const std::string text = terrain::read_toml_text(file);
-    const std::string death = rehearse_in_child([&] { (void)parse_scenario(text, file); });
-    if (!death.empty()) {
+    // What ends a process cannot be caught: tried in a child first. A refusal is met again below, in words.
+    const base::Answer rehearsal = base::run_isolated(kRehearsalSeconds, [&] {
+        (void)parse_scenario(text, file);
+        return std::string();
+    });
+    if (rehearsal.ending == base::Ending::died || rehearsal.ending == base::Ending::timed_out) {
         throw InputError(
             fmt::format("{}: the TOML parser {}; the file is damaged or too deeply "
                         "nested, simplify it",
-                        file.string(), death));
+                        file.string(), rehearsal.text));
     }
     return parse_scenario(text, file);
 }

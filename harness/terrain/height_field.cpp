@@ -7,26 +7,13 @@
 #include <cmath>
 
 #include "api/error.h"
+#include "base/hash.h"
 
 namespace lodbench::terrain {
 namespace {
 
-/// FNV-1a, 64 bits (Fowler, Noll and Vo), over little-endian words of 32 bits.
-class Fnv1a {
-public:
-    void add(std::uint32_t word) {
-        for (int shift = 0; shift < 32; shift += 8) {
-            state_ = (state_ ^ ((word >> shift) & 0xFFU)) * 0x100000001b3ULL;
-        }
-    }
-    [[nodiscard]] std::string hex() const { return fmt::format("{:016x}", state_); }
-
-private:
-    std::uint64_t state_ = 0xcbf29ce484222325ULL;
-};
-
 std::string checksum_of(const TerrainInfo& info, std::span<const float> heights) {
-    Fnv1a hash;
+    base::Fnv1a hash;
     hash.add(std::uint32_t(info.rows));
     hash.add(std::uint32_t(info.columns));
     for (const float height : heights) hash.add(std::bit_cast<std::uint32_t>(height));

@@ -157,11 +157,15 @@ LoadedTerrain load_raster(const TerrainSource& source) {
 
     const HeightRule rule(source, sidecar, description);
     const auto columns = std::size_t(info.columns);
-    std::vector<float> heights(std::size_t(info.rows) * columns);
     std::vector<double> samples(columns);
+    reader->read_row(0, samples);
+    // Memory is taken up as rows come: a small file that claims to be huge ends before it costs any.
+    std::vector<float> heights;
+    heights.reserve(std::size_t(info.rows) * columns);
     for (int row = 0; row < info.rows; ++row) {
-        reader->read_row(row, samples);
-        rule.apply(row, samples, std::span(heights).subspan(std::size_t(row) * columns, columns));
+        if (row > 0) reader->read_row(row, samples);
+        heights.resize(heights.size() + columns);
+        rule.apply(row, samples, std::span(heights).last(columns));
     }
     const std::uint64_t voids = fill_voids(heights, info.rows, info.columns, info.spacing);
     if (voids == heights.size()) throw InputError(rule.all_void());

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "api/error.h"
+#include "base/hash.h"
 
 namespace lodbench::terrain {
 namespace {
@@ -157,21 +158,13 @@ HeightFunction step(const Shape& shape, const TerrainInfo& info) {
                int, int column) { return column >= first ? base + height : base; };
 }
 
-/// Steele, Lea and Flood 2014, the finaliser of SplitMix64.
-std::uint64_t mix(std::uint64_t bits) {
-    bits += 0x9e3779b97f4a7c15ULL;
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-    return bits ^ (bits >> 31);
-}
-
 /// Unit vectors in uniform directions: hashed points of the square, kept where they fall inside the unit
 /// circle, made unit length. No sine is needed.
 std::vector<glm::dvec2> make_gradients() {
     constexpr std::size_t kCount = 256;
     std::vector<glm::dvec2> gradients;
     for (std::uint64_t draw = 0; gradients.size() < kCount; ++draw) {
-        const std::uint64_t bits = mix(draw);
+        const std::uint64_t bits = base::mix64(draw);
         const double x = (double(bits >> 32) - 0x1p31) * 0x1p-31;
         const double y = (double(bits & 0xFFFFFFFFU) - 0x1p31) * 0x1p-31;
         const double length2 = x * x + y * y;
@@ -188,8 +181,8 @@ std::vector<glm::dvec2> make_gradients() {
 class GradientNoise {
 public:
     explicit GradientNoise(std::uint64_t seed)
-        : seed_(mix(seed)),
-          shift_(double(mix(seed_ + 1) >> 32) * 0x1p-32, double(mix(seed_ + 2) >> 32) * 0x1p-32) {}
+        : seed_(base::mix64(seed)),
+          shift_(double(base::mix64(seed_ + 1) >> 32) * 0x1p-32, double(base::mix64(seed_ + 2) >> 32) * 0x1p-32) {}
 
     /// In [-sqrt(1/2), sqrt(1/2)].
     [[nodiscard]] double at(glm::dvec2 place, const std::vector<glm::dvec2>& gradients) const {
@@ -210,7 +203,7 @@ private:
     static double lerp(double a, double b, double t) { return a + (b - a) * t; }
 
     [[nodiscard]] std::size_t index(std::int64_t column, std::int64_t row) const {
-        return mix(seed_ ^ (std::uint64_t(column) * 0x9e3779b97f4a7c15ULL +
+        return base::mix64(seed_ ^ (std::uint64_t(column) * base::kGolden +
                             std::uint64_t(row) * 0xc2b2ae3d27d4eb4fULL)) >> 56;
     }
     std::uint64_t seed_;

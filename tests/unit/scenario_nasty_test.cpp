@@ -4,17 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "api/error.h"
-#include "scenario/child_rehearsal.h"
 #include "scenario/printable.h"
 #include "scenario/scenario.h"
 
@@ -195,23 +191,6 @@ TEST(NastyToml, mutations_of_a_good_file_parse_or_are_refused) {
     }
     EXPECT_GT(accepted, 100);
     EXPECT_GT(refused, 100);
-}
-
-TEST(ChildRehearsal, tells_deaths_from_refusals) {
-    EXPECT_EQ(rehearse_in_child([] {}), "");
-    EXPECT_EQ(rehearse_in_child([] { throw std::runtime_error("a refusal"); }), "");
-    EXPECT_EQ(rehearse_in_child([] { std::raise(SIGKILL); }), "died with signal 9");
-    EXPECT_EQ(rehearse_in_child([] { _exit(3); }), "ended with exit status 3");
-    EXPECT_EQ(rehearse_in_child(
-                  [] {
-                      for (;;) pause();
-                  },
-                  1),
-              "died with signal 14");
-}
-
-TEST(ChildRehearsal, survives_an_abort) {
-    EXPECT_EQ(rehearse_in_child([] { std::abort(); }), "died with signal 6");
 }
 
 TEST(Printable, escapes_what_is_not_plain_utf8_and_cuts_long_text) {

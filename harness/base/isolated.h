@@ -1,11 +1,12 @@
 #pragma once
-// Work in a forked child: a plugin that crashes, exits or loops costs its own answer only.
+// Work in a forked child: what crashes, exits or loops costs its own answer only.
 
 #include <functional>
 #include <string>
 
-namespace lodbench::conformance {
+namespace lodbench::base {
 
+/// How a piece of isolated work ended.
 enum class Ending {
     answered,  ///< `text` is what the work returned
     refused,   ///< the work threw InputError; `text` is its message
@@ -21,7 +22,8 @@ struct Answer {
 };
 
 /// Runs `work` in a forked child for at most `seconds` and returns what it answered. Must be called while
-/// this process has one thread and no GL context. Throws EnvironmentError when no child can be made.
+/// this process has one thread and no GL context: a child of a threaded process may only use what is safe in
+/// a signal handler. Throws EnvironmentError when no child can be made.
 [[nodiscard]] Answer run_isolated(double seconds, const std::function<std::string()>& work);
 
-}  // namespace lodbench::conformance
+}  // namespace lodbench::base

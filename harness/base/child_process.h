@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace lodbench::run {
+namespace lodbench::base {
 
 /// Owns a file descriptor.
 class FileDescriptor {
@@ -34,7 +34,7 @@ private:
 bool write_all(int descriptor, std::string_view text);
 
 /// How a child ended.
-struct Ending {
+struct ChildEnding {
     bool by_signal = false;
     int number = 0;  ///< of the signal, or the exit status
     [[nodiscard]] bool well() const { return !by_signal && number == 0; }
@@ -58,14 +58,14 @@ public:
     bool wait(std::chrono::milliseconds time, int readable = -1);
     void kill_group();
     [[nodiscard]] pid_t pid() const { return pid_; }
-    [[nodiscard]] const Ending& ending() const { return ending_; }  ///< valid once wait() gave true
+    [[nodiscard]] const ChildEnding& ending() const { return ending_; }  ///< valid once wait() gave true
 
 private:
     bool reap();
     pid_t pid_ = -1;
     FileDescriptor ended_;  // pidfd: readable once the child has ended
     bool reaped_ = false;
-    Ending ending_;
+    ChildEnding ending_;
 };
 
-}  // namespace lodbench::run
+}  // namespace lodbench::base

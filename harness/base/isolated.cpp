@@ -1,14 +1,15 @@
-#include "conformance/isolated.h"
+#include "base/isolated.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "api/error.h"
-#include "run/child_process.h"
+#include "base/child_process.h"
 
-namespace lodbench::conformance {
+namespace lodbench::base {
 
 namespace {
 
@@ -33,17 +34,25 @@ std::string answer_of(const std::function<std::string()>& work) {
 }  // namespace
 
 Answer run_isolated(double seconds, const std::function<std::string()>& work) {
-    const run::FileDescriptor file = run::memory_file("lodbench: answer");
-    run::ChildProcess child([&] {
+    const FileDescriptor file = memory_file("lodbench: answer");
+    ChildProcess child([&] {
         // A crash on purpose (or not) should leave a line in the report, not a core file.
         const rlimit no_core{0, 0};
         setrlimit(RLIMIT_CORE, &no_core);
-        return run::write_all(file.number(), answer_of(work) + kStop) ? 0 : 1;
+        return write_all(file.number(), answer_of(work) + kStop) ? 0 : 1;
     });
-    if (!child.wait(std::chrono::milliseconds(std::chrono::milliseconds::rep(seconds * 1000)))) {
-        return {Ending::timed_out, fmt::format("gave no answer within {:g} s", seconds)};
+    // A signal to this process ends a wait early.
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                             std::chrono::duration<double>(seconds));
+    for (bool ended = false; !ended;) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+        if (left.count() <= 0) {
+            return {Ending::timed_out, fmt::format("gave no answer within {:g} s", seconds)};
+        }
+        ended = child.wait(std::min(left, std::chrono::milliseconds(1000)));
     }
-    const std::string text = run::read_all(file);
+    const std::string text = read_all(file);
     // A child that answers and dies on its way out (a plugin's thread, say) has not kept its promise either.
     if (!child.ending().well() || text.size() < 2 || text.back() != kStop) {
         return {Ending::died, fmt::format("ended before it answered: {}", child.ending().words())};
@@ -57,4 +66,4 @@ Answer run_isolated(double seconds, const std::function<std::string()>& work) {
     }
 }
 
-}  // namespace lodbench::conformance
+}  // namespace lodbench::base

@@ -1,4 +1,4 @@
-#include "run/child_process.h"
+#include "base/child_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ extern "C" {  // glibc 2.36 forgets to say so
 
 #include "api/error.h"
 
-namespace lodbench::run {
+namespace lodbench::base {
 
 FileDescriptor::~FileDescriptor() {
     close();
@@ -68,7 +68,7 @@ bool write_all(int descriptor, std::string_view text) {
     return true;
 }
 
-std::string Ending::words() const {
+std::string ChildEnding::words() const {
     if (!by_signal) return fmt::format("the process exited with status {}", number);
     const char* name = sigdescr_np(number);
     std::string words = name == nullptr ? "killed" : name;
@@ -140,4 +140,4 @@ void ChildProcess::kill_group() {
     if (!reaped_) ::kill(-pid_, SIGKILL);
 }
 
-}  // namespace lodbench::run
+}  // namespace lodbench::base
