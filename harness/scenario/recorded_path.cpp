@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "api/error.h"
-#include "scenario/printable.h"
+#include "base/printable.h"
 
 namespace lodbench::scenario {
 namespace {
@@ -24,13 +24,13 @@ double number_of(std::string_view field, std::string_view name, const std::strin
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
     if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
         throw InputError(fmt::format("{}: {} is {}; write a finite decimal number without spaces",
-                                     where, name, printable(field)));
+                                     where, name, base::printable(field)));
     }
     if (std::abs(value) > kMaxMagnitude) {
         throw InputError(
             fmt::format("{}: {} is {}, which is out of range; write a number between "
                         "-1e9 and 1e9",
-                        where, name, printable(field)));
+                        where, name, base::printable(field)));
     }
     return value;
 }
@@ -46,7 +46,7 @@ RecordedPlace parse_row(std::string_view row, std::size_t frame, const std::stri
     }
     if (++count != 7) {
         throw InputError(fmt::format("{}: the row {} has {} fields; write seven: {}", where,
-                                     printable(row), count, kHeader));
+                                     base::printable(row), count, kHeader));
     }
     double values[7];
     for (std::size_t i = 0; i < 7; ++i) values[i] = number_of(fields[i], kNames[i], where);
@@ -54,7 +54,7 @@ RecordedPlace parse_row(std::string_view row, std::size_t frame, const std::stri
         throw InputError(
             fmt::format("{}: frame is {} where {} was expected; number the rows 0, 1, "
                         "2, ... without gaps",
-                        where, printable(fields[0]), frame));
+                        where, base::printable(fields[0]), frame));
     }
     return {{values[1], values[2], values[3]}, {values[4], values[5], values[6]}};
 }
@@ -74,7 +74,7 @@ std::vector<RecordedPlace> parse_recorded(std::string_view text,
             places.push_back(parse_row(row, places.size(), where));
         } else if (row != kHeader) {
             throw InputError(fmt::format("{}: the header is {}; the first line must be {}", where,
-                                         printable(row), kHeader));
+                                         base::printable(row), kHeader));
         }
     }
     if (places.empty()) {

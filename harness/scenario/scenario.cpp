@@ -9,8 +9,8 @@
 
 #include "api/error.h"
 #include "base/isolated.h"
+#include "base/printable.h"
 #include "scenario/flight_section.h"
-#include "scenario/printable.h"
 #include "scenario/toml_section.h"
 #include "terrain/synthetic.h"
 #include "terrain/toml_file.h"
@@ -50,7 +50,7 @@ void read_name(Section& top, const std::filesystem::path& file, Scenario& scenar
     throw InputError(
         fmt::format("{}:1: the file's name {} cannot name the scenario ({}); write "
                     "name = \"...\" as its first line",
-                    file.string(), printable(scenario.name), remedy));
+                    file.string(), base::printable(scenario.name), remedy));
 }
 
 void read_synthetic(Section& section, terrain::TerrainSource& source) {
@@ -206,7 +206,7 @@ MethodRequest read_method(Section& section) {
                 std::string value = setting_text(section, key.str(), entry);
                 if (std::find(values.begin(), values.end(), value) != values.end()) {
                     section.refuse(key.str(),
-                                   fmt::format("{} is there twice; remove one", printable(value)));
+                                   fmt::format("{} is there twice; remove one", base::printable(value)));
                 }
                 values.push_back(std::move(value));
             }

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "api/error.h"
-#include "scenario/printable.h"
+#include "base/printable.h"
 #include "terrain/toml_file.h"
 
 namespace lodbench::scenario {
@@ -61,7 +61,7 @@ const char* kind_of(const toml::node& node) {
 }  // namespace
 
 std::string describe(const toml::node& node) {
-    if (const auto* text = node.as_string()) return printable(text->get());
+    if (const auto* text = node.as_string()) return base::printable(text->get());
     if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
     if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
     if (const auto* boolean = node.as_boolean()) return boolean->get() ? "true" : "false";
@@ -256,7 +256,7 @@ void Section::refuse_unknown() const {
     if (first == nullptr) return;
     throw InputError(fmt::format(
         "{}: {}{}{} is not a key of a scenario; {}", terrain::toml_place(*first, file_), title_,
-        title_.empty() ? "" : " ", printable(first->str()), known_names(first->str(), asked_)));
+        title_.empty() ? "" : " ", base::printable(first->str()), known_names(first->str(), asked_)));
 }
 
 }  // namespace lodbench::scenario

@@ -158,12 +158,11 @@ LoadedTerrain load_raster(const TerrainSource& source) {
     const HeightRule rule(source, sidecar, description);
     const auto columns = std::size_t(info.columns);
     std::vector<double> samples(columns);
-    reader->read_row(0, samples);
-    // Memory is taken up as rows come: a small file that claims to be huge ends before it costs any.
+    // Memory is touched as rows come: a small file that claims to be huge ends before it costs any.
     std::vector<float> heights;
     heights.reserve(std::size_t(info.rows) * columns);
     for (int row = 0; row < info.rows; ++row) {
-        if (row > 0) reader->read_row(row, samples);
+        reader->read_row(row, samples);
         heights.resize(heights.size() + columns);
         rule.apply(row, samples, std::span(heights).last(columns));
     }

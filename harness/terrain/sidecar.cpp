@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "api/error.h"
+#include "base/printable.h"
 #include "terrain/toml_file.h"
 
 namespace lodbench::terrain {
@@ -99,13 +100,13 @@ void set_type(Sidecar& sidecar, const Entry& entry) {
     for (const auto& [name, type] : kTypes) {
         if (text == name) sidecar.type = type;
     }
-    if (!sidecar.type) entry.refuse(fmt::format("= \"{}\"; known: int16, uint16, float32", text));
+    if (!sidecar.type) entry.refuse(fmt::format("= {}; known: int16, uint16, float32", base::printable(text)));
 }
 
 void set_endian(Sidecar& sidecar, const Entry& entry) {
     const std::string text = entry.text();
     if (text != "little" && text != "big") {
-        entry.refuse(fmt::format("= \"{}\"; known: little, big", text));
+        entry.refuse(fmt::format("= {}; known: little, big", base::printable(text)));
     }
     sidecar.big_endian = text == "big";
 }
@@ -181,8 +182,8 @@ Sidecar read_sidecar(const std::filesystem::path& raster) {
         const auto* found = std::find_if(std::begin(kKeys), std::end(kKeys),
                                          [name](const auto& known) { return known.first == name; });
         if (found == std::end(kKeys)) {
-            throw InputError(fmt::format("{}: unknown key '{}'; known: {}", toml_place(key, file),
-                                         name, known_keys()));
+            throw InputError(fmt::format("{}: unknown key {}; known: {}", toml_place(key, file),
+                                         base::printable(name), known_keys()));
         }
         found->second(sidecar, Entry(name, node, file));
     }

@@ -11,10 +11,11 @@
 #include <string>
 
 #include "api/error.h"
-#include "scenario/printable.h"
+#include "base/printable.h"
 #include "scenario/scenario.h"
 
 using namespace lodbench;
+using base::printable;
 using namespace lodbench::scenario;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;

@@ -193,7 +193,7 @@ TEST_F(Import, sidecar_mistakes_name_their_line) {
         return refusal(source("a.raw", "12345678", "rows = 2\n" + line + "\n"));
     };
     EXPECT_EQ(mistake("colums = 2"),
-              "a.raw.toml:2: unknown key 'colums'; known: name, spacing, origin, vertical_scale, "
+              "a.raw.toml:2: unknown key \"colums\"; known: name, spacing, origin, vertical_scale, "
               "vertical_offset, no_data, voids_filled, rows, columns, type, endian");
     EXPECT_EQ(mistake("columns = 1"),
               "a.raw.toml:2: columns = 1; it must lie in 2 to 2147483647");

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-namespace lodbench::scenario {
+namespace lodbench::base {
 
 /// `text` in double quotes; control characters, quotes and backslashes escaped, bytes that are not
 /// UTF-8 as \xNN, cut after 80 bytes with "...".
 [[nodiscard]] std::string printable(std::string_view text);
 
-}  // namespace lodbench::scenario
+}  // namespace lodbench::base

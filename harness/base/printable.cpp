@@ -1,8 +1,8 @@
-#include "scenario/printable.h"
+#include "base/printable.h"
 
 #include <fmt/format.h>
 
-namespace lodbench::scenario {
+namespace lodbench::base {
 namespace {
 
 constexpr std::size_t kMaxBytes = 80;
@@ -47,4 +47,4 @@ std::string printable(std::string_view text) {
     return result + "\"";
 }
 
-}  // namespace lodbench::scenario
+}  // namespace lodbench::base
