@@ -32,7 +32,8 @@ function(lodbench_add_method name)
   target_link_libraries(${name} PRIVATE lodbench::plugin ${arg_LIBRARIES})
   # A plugin with a missing symbol is found when it is built, not when it is loaded; one exported symbol.
   if(LODBENCH_SANITIZE)
-    target_compile_options(${name} PRIVATE -fsanitize=${LODBENCH_SANITIZE} -fno-omit-frame-pointer)
+    target_compile_options(${name} PRIVATE -fsanitize=${LODBENCH_SANITIZE} -fno-sanitize-recover=all
+                           -fno-omit-frame-pointer)
     target_link_options(${name} PRIVATE -fsanitize=${LODBENCH_SANITIZE})
   else()
     target_link_options(${name} PRIVATE LINKER:--no-undefined)
