@@ -246,6 +246,9 @@ struct Context::Impl {
 };
 
 Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
+    if (eglGetCurrentContext() != EGL_NO_CONTEXT) {
+        throw ContractError("platform::Context: another context is current on this thread; destroy it first");
+    }
     std::string tried;
     const auto note = [&](const std::string& text) { tried += (tried.empty() ? "" : "; ") + text; };
     std::string why_no_devices;

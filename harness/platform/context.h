@@ -20,7 +20,8 @@ struct DeviceEntry {
 class Context {
 public:
     /// `device`: "" for the best (hardware, then software), a number of list_devices(), or a part of a
-    /// name. Throws EnvironmentError with everything that was tried and what each attempt said.
+    /// name. Throws EnvironmentError with everything that was tried and what each attempt said,
+    /// ContractError while another context is current on this thread.
     explicit Context(const std::string& device = "");
     ~Context();
     Context(const Context&) = delete;

@@ -78,6 +78,12 @@ TEST(Context, listing_devices_keeps_the_current_context) {
     glDeleteBuffers(1, &name);
 }
 
+TEST(Context, a_second_one_on_a_thread_is_refused_and_the_first_stays_current) {
+    const test::GlTest gl;
+    EXPECT_THROW(Context(), ContractError);
+    EXPECT_NE(glGetString(GL_VERSION), nullptr);
+}
+
 TEST(Context, device_without_a_context_is_refused) {
     EXPECT_THROW(gl::Device(), EnvironmentError);
 }
