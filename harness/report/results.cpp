@@ -19,8 +19,12 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void fail(const char* what, const fs::path& path, int error) {
-    throw EnvironmentError(fmt::format("cannot {} {}: {}; make room there, or choose another folder with --out",
-                                       what, path.string(), std::strerror(error)));
+    const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+    const char* remedy = full              ? "make room there, or choose another place with --out"
+                         : error == ENOENT ? "does its folder exist?"
+                                           : "is it the right place?";
+    throw EnvironmentError(
+        fmt::format("cannot {} {}: {}; {}", what, path.string(), std::strerror(error), remedy));
 }
 
 /// An open file that is closed on the way out.
@@ -58,6 +62,13 @@ int write_and_sync(int number, std::string_view text) {
 
 void write_whole(const fs::path& path, std::string_view text) {
     const fs::path temporary = path.parent_path() / ("." + path.filename().string() + ".tmp");
+    // Renaming over a device or a pipe would take it from everyone.
+    std::error_code ignored;
+    if (const fs::file_status status = fs::status(path, ignored);
+        fs::exists(status) && !fs::is_regular_file(status)) {
+        throw EnvironmentError(fmt::format("cannot write {}: it is not a regular file; choose another "
+                                           "place with --out", path.string()));
+    }
     int error = 0;
     {
         File file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
