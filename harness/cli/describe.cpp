@@ -5,10 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "api/error.h"
 #include "cli/commands.h"
 #include "cli/method_json.h"
+#include "cli/options.h"
 #include "report/json.h"
+#include "run/exit_status.h"
 #include "run/plugin_library.h"
 
 namespace lodbench::cli {
@@ -39,25 +40,14 @@ void print(const run::MethodInfo& method) {
 }
 
 int describe(const Options& options) {
-    const auto plugins = run::list_plugins(run::plugin_folders(options.plugin_dirs));
-    std::vector<std::string> known;
-    std::string refusals;
-    for (const run::PluginListing& plugin : plugins) {
-        if (!plugin.refusal.empty()) refusals += "; " + plugin.refusal;
-        for (const run::MethodInfo& method : plugin.methods) {
-            known.push_back(method.id);
-            if (method.id != options.method) continue;
-            if (options.json) {
-                fmt::print("{}\n", report::to_text(method_json(method)));
-            } else {
-                print(method);
-            }
-            return 0;
-        }
+    const auto plugins = find_plugins(options.plugin_dirs);
+    const run::MethodInfo& method = run::find_method(plugins, options.method, "describe");
+    if (options.json) {
+        fmt::print("{}\n", report::to_text(method_json(method)));
+    } else {
+        print(method);
     }
-    throw InputError(fmt::format("no method '{}' was found; known: {}{}", options.method,
-                                 known.empty() ? std::string("none") : fmt::format("{}", fmt::join(known, ", ")),
-                                 refusals));
+    return run::kAllWell;
 }
 
 }  // namespace
@@ -65,9 +55,8 @@ int describe(const Options& options) {
 void add_describe(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("describe", "Shows a method's paper, parameters and promises.");
-    command->add_option("method", options->method, "id of the method")->required();
-    command->add_option("--plugin-dir", options->plugin_dirs, "folder with plugins (again for more)")
-        ->allow_extra_args(false);
+    command->add_option("METHOD", options->method, "id of the method")->required();
+    add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--json", options->json, "JSON for programs");
     command->callback([options, &status] { status = describe(*options); });
 }

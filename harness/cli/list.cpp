@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/method_json.h"
+#include "cli/options.h"
 #include "platform/context.h"
 #include "report/json.h"
 #include "run/plugin_library.h"
@@ -39,7 +40,7 @@ int list_devices(bool json) {
 }
 
 int list_methods(const Options& options) {
-    const auto plugins = run::list_plugins(run::plugin_folders(options.plugin_dirs));
+    const auto plugins = find_plugins(options.plugin_dirs);
     Json::Value object;
     object["methods"] = Json::arrayValue;
     object["refused"] = Json::arrayValue;
@@ -65,8 +66,7 @@ int list_methods(const Options& options) {
 void add_list(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("list", "Shows the methods that were found, and the devices.");
-    command->add_option("--plugin-dir", options->plugin_dirs, "folder with plugins (again for more)")
-        ->allow_extra_args(false);
+    add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--devices", options->devices, "the EGL devices instead, for --device");
     command->add_flag("--json", options->json, "JSON for programs");
     command->callback([options, &status] {

@@ -7,16 +7,28 @@
 
 #include "api/error.h"
 #include "cli/commands.h"
+#include "run/exit_status.h"
 
 namespace {
-
-// Exit statuses; see the README.
-constexpr int kUsageOrInput = 2;
-constexpr int kNothingMeasured = 4;
 
 int fail(int status, const char* what) {
     fmt::print(stderr, "lodbench: {}\n", what);
     return status;
+}
+
+/// Where a word stands in the place of a command: which, and what could stand there; else "".
+std::string unknown_command(const CLI::App& app) {
+    const auto chosen = app.get_subcommands();
+    if (!chosen.empty()) return unknown_command(*chosen.front());
+    const std::vector<std::string> rest = app.remaining();
+    const auto is_shown = [](const CLI::App* command) { return !command->get_group().empty(); };
+    const auto commands = app.get_subcommands(is_shown);
+    if (commands.empty() || rest.empty() || rest.front().starts_with('-')) return {};
+    std::string known;
+    for (const CLI::App* command : commands) {
+        known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    return fmt::format("there is no command '{}'; known: {}", rest.front(), known);
 }
 
 }  // namespace
@@ -30,6 +42,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     int status = 0;
     using namespace lodbench::cli;
+    using namespace lodbench::run;
     for (const auto add : {add_list, add_describe, add_run, add_cell, add_mesh, add_terrain,
                            add_new_method, add_validate}) {
         add(app, status);
@@ -37,9 +50,12 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : kUsageOrInput;
+        if (const std::string words = unknown_command(app); !words.empty() && error.get_exit_code() != 0) {
+            return fail(kWrongInput, words.c_str());
+        }
+        return app.exit(error) == 0 ? kAllWell : kWrongInput;
     } catch (const lodbench::InputError& error) {
-        return fail(kUsageOrInput, error.what());
+        return fail(kWrongInput, error.what());
     } catch (const lodbench::EnvironmentError& error) {
         return fail(kNothingMeasured, error.what());
     } catch (const std::exception& error) {

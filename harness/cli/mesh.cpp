@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/isolated.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "report/results.h"
+#include "run/exit_status.h"
 #include "run/locations.h"
 #include "run/mesh_export.h"
 #include "run/stage.h"
@@ -23,31 +24,19 @@ namespace lodbench::cli {
 namespace {
 
 struct MeshOptions {
-    std::string method, scenario, out, device, size;
-    std::vector<std::string> settings, plugin_folders;
+    std::string method, scenario, out, device;
+    std::vector<std::string> settings;
+    std::vector<std::filesystem::path> plugin_dirs;
     int frame = 0;
-    std::optional<int> frames;
+    scenario::Overrides overrides;
     bool before_clipping = false;
     bool json = false;
 };
 
-using Settings = std::vector<std::pair<std::string, std::string>>;
-
-Viewport parse_size(const std::string& text) {
-    Viewport size;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%5dx%5d%c", &size.width, &size.height, &rest) != 2 || size.width < 1 ||
-        size.height < 1 || size.width > 16384 || size.height > 16384) {
-        throw InputError(fmt::format("--size {}: expected WxH with 1 to 16384 pixels each, such as 640x480",
-                                     text));
-    }
-    return size;
-}
-
 /// The scenario's own settings of the method, then what --set says, as `param=value` or
 /// `method.param=value`.
-Settings settings_of(const MeshOptions& options, const scenario::Scenario& scenario) {
-    Settings settings;
+run::Settings settings_of(const MeshOptions& options, const scenario::Scenario& scenario) {
+    run::Settings settings;
     const auto put = [&](const std::string& name, const std::string& value) {
         for (auto& setting : settings) {
             if (setting.first == name) {
@@ -57,21 +46,14 @@ Settings settings_of(const MeshOptions& options, const scenario::Scenario& scena
         }
         settings.emplace_back(name, value);
     };
-    std::vector<std::pair<std::string, std::string>> chosen;
+    run::Settings chosen;
     for (const std::string& text : options.settings) {
-        const std::size_t equals = text.find('=');
-        if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-            throw InputError(fmt::format("--set {}: expected PARAM=VALUE", text));
+        const run::Setting setting = run::parse_setting(text, "[METHOD.]PARAM=VALUE");
+        if (!setting.method.empty() && setting.method != options.method) {
+            throw InputError(fmt::format("--set {}: the mesh is of '{}', not of '{}'", text, options.method,
+                                         setting.method));
         }
-        std::string name = text.substr(0, equals);
-        if (const std::size_t dot = name.find('.'); dot != std::string::npos) {
-            if (name.substr(0, dot) != options.method) {
-                throw InputError(fmt::format("--set {}: the mesh is of '{}', not of '{}'", text, options.method,
-                                             name.substr(0, dot)));
-            }
-            name.erase(0, dot + 1);
-        }
-        chosen.emplace_back(std::move(name), text.substr(equals + 1));
+        chosen.emplace_back(setting.name, setting.value);
     }
     for (const scenario::MethodRequest& request : scenario.methods) {
         if (request.id != options.method) continue;
@@ -90,22 +72,6 @@ Settings settings_of(const MeshOptions& options, const scenario::Scenario& scena
     return settings;
 }
 
-run::MethodInfo find_method(const MeshOptions& options) {
-    const std::vector<std::filesystem::path> extra(options.plugin_folders.begin(),
-                                                   options.plugin_folders.end());
-    std::string known;
-    std::string refusals;
-    for (const run::PluginListing& listing : run::list_plugins(run::plugin_folders(extra))) {
-        for (const run::MethodInfo& method : listing.methods) {
-            if (method.id == options.method) return method;
-            known += (known.empty() ? "" : ", ") + method.id;
-        }
-        if (!listing.refusal.empty()) refusals += "; refused: " + listing.refusal;
-    }
-    throw InputError(fmt::format("no method is called '{}'; there are: {}{}", options.method,
-                                 known.empty() ? "none" : known, refusals));
-}
-
 std::string text_of(const ParamValue& value) {
     struct {
         std::string operator()(bool flag) const { return flag ? "true" : "false"; }
@@ -119,7 +85,7 @@ std::string text_of(const ParamValue& value) {
 /// Flies to the frame in lockstep, as a method may keep state from frame to frame, and writes the file.
 /// Returns what is to be printed.
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
-                        const run::MethodInfo& method, const Settings& settings) {
+                        const run::MethodInfo& method, const run::Settings& settings) {
     const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(scenario.terrain);
     const auto path = scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
     run::VitalSigns signs;
@@ -173,39 +139,34 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
                                       mesh.triangles.size(), mesh.vertices.size(), options.frame, method.id);
 }
 
-/// Exit statuses: 2 for the user's mistakes, 3 when the method failed, 4 without the means.
-constexpr int kMethodFailed = 3;
-
 int run_mesh(const MeshOptions& options) {
     const std::filesystem::path file =
         options.scenario.empty() ? run::demo_scenario() : std::filesystem::path(options.scenario);
     scenario::Scenario scenario = scenario::load_scenario(file);
-    scenario::Overrides overrides;
-    overrides.frames = options.frames;
-    if (!options.size.empty()) overrides.viewport = parse_size(options.size);
-    scenario::apply(overrides, scenario);
+    scenario::apply(options.overrides, scenario);
     if (options.frame >= scenario.frames) {
         throw InputError(fmt::format("--frame {}: the flight of {} has frames 0 to {}", options.frame,
                                      scenario.name, scenario.frames - 1));
     }
-    const Settings settings = settings_of(options, scenario);
-    const run::MethodInfo method = find_method(options);
+    const run::Settings settings = settings_of(options, scenario);
+    const run::MethodInfo method =
+        run::find_method(find_plugins(options.plugin_dirs), options.method, "mesh");
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
     const base::Answer answer =
         base::run_isolated(scenario.cell_time_limit_s,
                                   [&] { return export_mesh(options, scenario, method, settings); });
     using base::Ending;
     switch (answer.ending) {
-        case Ending::answered: fmt::print("{}\n", answer.text); return 0;
+        case Ending::answered: fmt::print("{}\n", answer.text); return run::kAllWell;
         case Ending::refused: throw InputError(answer.text);
         case Ending::no_means: throw EnvironmentError(answer.text);
-        case Ending::threw: fmt::print(stderr, "lodbench: {}\n", answer.text); return kMethodFailed;
+        case Ending::threw: fmt::print(stderr, "lodbench: {}\n", answer.text); return run::kCellFailed;
         case Ending::died:
         case Ending::timed_out: break;
     }
     fmt::print(stderr, "lodbench: the process that flew '{}' of plugin {} {}\n", method.id,
                method.plugin.string(), answer.text);
-    return kMethodFailed;
+    return run::kCellFailed;
 }
 
 }  // namespace
@@ -219,12 +180,12 @@ void add_mesh(CLI::App& app, int& status) {
     command->add_option("--frame", options->frame, "index on the flight path, 0 when not given")
         ->check(CLI::NonNegativeNumber);
     command->add_option("-o,--out", options->out, "file to write, whole or not at all")->required();
-    command->add_option("--set", options->settings, "PARAM=VALUE of the method; may be repeated");
-    command->add_option("--frames", options->frames, "number of frames over which the path is spread")
+    add_repeated(*command, "--set", options->settings, "[METHOD.]PARAM=VALUE");
+    command->add_option("--frames", options->overrides.frames, "number of frames over which the path is spread")
         ->check(CLI::PositiveNumber);
-    command->add_option("--size", options->size, "viewport, WxH in pixels");
-    command->add_option("--device", options->device, "GL device, by number or part of its name");
-    command->add_option("--plugin-dir", options->plugin_folders, "folder to search for plugins first");
+    add_size(*command, options->overrides.viewport);
+    add_device(*command, options->device);
+    add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--before-clipping", options->before_clipping,
                       "as the method sent it: padding and degenerate triangles included");
     command->add_flag("--json", options->json, "print the counts as JSON");

@@ -6,18 +6,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "api/error.h"
 #include "cli/commands.h"
+#include "report/results.h"
 #include "run/locations.h"
 
 namespace lodbench::cli {
@@ -84,25 +82,6 @@ fs::path template_folder() {
                     places[0].string(), places[1].string()));
 }
 
-std::string read_text(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    if (!stream || !(text << stream.rdbuf())) {
-        throw EnvironmentError(
-            fmt::format("cannot read {}: {}", file.string(), std::strerror(errno)));
-    }
-    return text.str();
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-    stream << text;
-    stream.flush();
-    if (!stream)
-        throw EnvironmentError(
-            fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
-}
-
 std::string rename_all(std::string text, const MethodName& name) {
     const std::array<std::pair<std::string, std::string>, 5> renames = {
         {{"template_method", name.snake_case},
@@ -136,8 +115,8 @@ void copy_template(const fs::path& folder, const MethodName& name) {
     }
     try {
         for (const char* file : kTemplateFiles) {
-            write_text(unfinished / rename_all(file, name),
-                       rename_all(read_text(source / file), name));
+            report::write_whole(unfinished / rename_all(file, name),
+                       rename_all(report::read_text(source / file), name));
         }
         fs::rename(unfinished, folder, error);
         if (error) {
@@ -151,15 +130,10 @@ void copy_template(const fs::path& folder, const MethodName& name) {
 }
 
 void add_to_tree(const fs::path& list, const MethodName& name) {
-    std::string text = read_text(list);
+    std::string text = report::read_text(list);
     if (!text.empty() && text.back() != '\n') text += '\n';
     text += fmt::format("add_subdirectory({})\n", name.snake_case);
-    const fs::path unfinished = list.string() + ".unfinished";
-    write_text(unfinished, text);
-    std::error_code error;
-    fs::rename(unfinished, list, error);
-    if (error)
-        throw EnvironmentError(fmt::format("cannot write {}: {}", list.string(), error.message()));
+    report::write_whole(list, text);
 }
 
 /// For a shell: as it is where nothing in it is special, else in single quotes.
@@ -227,7 +201,7 @@ void add_new_method(CLI::App& app, int&) {
         "(and its line in methods/CMakeLists.txt), elsewhere a project of its own");
     const auto name = std::make_shared<std::string>();
     const auto directory = std::make_shared<std::string>();
-    command->add_option("name", *name, "lower-case letter, then a-z, 0-9 and '-'")->required();
+    command->add_option("NAME", *name, "lower-case letter, then a-z, 0-9 and '-'")->required();
     command->add_option("--dir", *directory, "write a project of its own into this folder");
     command->callback([name, directory] { new_method(*name, *directory); });
 }

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -14,6 +13,7 @@
 
 #include "api/error.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "report/json.h"
 #include "report/results.h"
 #include "report/table.h"
@@ -26,27 +26,11 @@ namespace {
 
 struct Options {
     run::RunRequest request;
-    std::string size;
     int frames = 0;
     int repetitions = 0;
     std::uint64_t seed = 0;
     bool json = false;
 };
-
-Viewport parse_size(const std::string& text) {
-    constexpr int kLargest = 16384;
-    Viewport size;
-    const char* end = text.data() + text.size();
-    const auto width = std::from_chars(text.data(), end, size.width);
-    if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
-        const auto height = std::from_chars(width.ptr + 1, end, size.height);
-        if (height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.height >= 1 &&
-            size.width <= kLargest && size.height <= kLargest) {
-            return size;
-        }
-    }
-    throw InputError(fmt::format("--size {}: expected WIDTHxHEIGHT, each 1..{}, as 640x480", text, kLargest));
-}
 
 /// Progress on standard error: one line redrawn on a terminal, a line for each finished cell elsewhere.
 class Progress final : public run::CampaignObserver {
@@ -130,8 +114,7 @@ int fly(Options& options) {
     if (request.resume && request.out.empty()) {
         throw InputError("--resume: which run? Name its folder with --out DIR");
     }
-    const bool named = !request.scenarios.empty() || !request.methods.empty() || !request.settings.empty();
-    if (request.resume && !named && !std::filesystem::exists(request.out / "run.json")) {
+    if (request.resume && !request.names_cells() && !std::filesystem::exists(request.out / "run.json")) {
         throw InputError(fmt::format("--resume --out {}: there is no run.json in it, so nothing to resume; "
                                      "start the run without --resume", request.out.string()));
     }
@@ -150,27 +133,24 @@ void add_run(CLI::App& app, int& status) {
     run::RunRequest& request = options->request;
     CLI::App* command = app.add_subcommand(
         "run", "Flies scenarios with methods, each cell in a process of its own, and writes the results.");
-    command->add_option("scenario", request.scenarios, "scenario files; none: the demo over Puget Sound");
-    command->add_option("--method,-m", request.methods, "method to fly (again for more); none: as the scenario says")
-        ->allow_extra_args(false);
-    command->add_option("--set", request.settings, "METHOD.PARAMETER=VALUE[,VALUE...]; several values are swept")
-        ->allow_extra_args(false);
+    command->add_option("SCENARIO", request.scenarios, "scenario files; none: the demo over Puget Sound");
+    add_repeated(*command, "--method,-m", request.methods, "method to fly; none: as the scenario says");
+    add_repeated(*command, "--set", request.settings,
+                 "METHOD.PARAMETER=VALUE[,VALUE...]; several values are swept");
     command->add_option("--out,-o", request.out, "results folder; default lodbench-results/<UTC date-time>");
-    command->add_option("--plugin-dir", request.plugin_dirs, "folder with plugins (again for more)")
-        ->allow_extra_args(false);
+    add_plugin_dirs(*command, request.plugin_dirs);
     auto* frames = command->add_option("--frames", options->frames, "frames of the flight")
                        ->check(CLI::Range(1, 1000000));
-    auto* size = command->add_option("--size", options->size, "picture, as 640x480");
+    add_size(*command, request.overrides.viewport);
     auto* seed = command->add_option("--seed", options->seed, "seed of the order and of random choices");
     auto* repeat = command->add_option("--repeat", options->repetitions, "repetitions of each cell")
                        ->check(CLI::Range(1, 10000));
-    command->add_option("--device", request.device, "EGL device: number or part of its name");
-    command->add_flag("--resume", request.resume, "finish what is missing in --out");
+    add_device(*command, request.device);
+    command->add_flag("--resume", request.resume, "finish what is missing in --out, as the run began");
     command->add_flag("--json", options->json, "print one JSON object instead of the table");
     command->callback([=, &status] {
         run::RunRequest& wanted = options->request;
         if (*frames) wanted.overrides.frames = options->frames;
-        if (*size) wanted.overrides.viewport = parse_size(options->size);
         if (*seed) wanted.overrides.seed = options->seed;
         if (*repeat) wanted.overrides.repetitions = options->repetitions;
         wanted.command_line = command_line();

@@ -1,7 +1,6 @@
 // lodbench terrain info | import | synth
 
 #include <fmt/format.h>
-#include <json/json.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -9,6 +8,9 @@
 
 #include "api/error.h"
 #include "cli/commands.h"
+#include "cli/options.h"
+#include "report/json.h"
+#include "run/settings.h"
 #include "terrain/export_raw.h"
 #include "terrain/load_terrain.h"
 #include "terrain/synthetic.h"
@@ -51,9 +53,7 @@ void add_shape(CLI::App& command, Options& options) {
     command.add_option("--columns", source.columns, "Columns of a synthetic terrain")
         ->capture_default_str();
     command.add_option("--seed", source.seed, "Seed of a synthetic terrain")->capture_default_str();
-    command
-        .add_option("--set", options.settings, "A parameter of the synthetic form, as key=value")
-        ->allow_extra_args(false);
+    add_repeated(command, "--set", options.settings, "A parameter of the synthetic form, as key=value");
 }
 
 /// The forms and their parameters, for --help.
@@ -69,17 +69,17 @@ std::string forms_text() {
     return text;
 }
 
-void parse_setting(const std::string& setting, TerrainSource& source) {
-    const std::size_t equals = setting.find('=');
-    const std::string value = equals == std::string::npos ? "" : setting.substr(equals + 1);
+void add_to_shape(const std::string& text, TerrainSource& source) {
+    constexpr const char* kForm = "key=value with a number for the value";
+    const run::Setting setting = run::parse_setting(text, kForm);
+    const std::string& value = setting.value;
     double number = 0;
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-    if (equals == 0 || value.empty() || error != std::errc() || end != value.data() + value.size()) {
-        throw InputError(
-            fmt::format("--set {}: expected key=value with a number for the value", setting));
+    if (!setting.method.empty() || error != std::errc() || end != value.data() + value.size()) {
+        throw InputError(fmt::format("--set {}: expected {}", text, kForm));
     }
-    if (!source.shape.emplace(setting.substr(0, equals), number).second) {
-        throw InputError(fmt::format("--set {}: the key is set twice; set it once", setting));
+    if (!source.shape.emplace(setting.name, number).second) {
+        throw InputError(fmt::format("--set {}: the key is set twice; set it once", text));
     }
 }
 
@@ -99,7 +99,7 @@ LoadedTerrain load(Options& options, const CLI::App& command) {
         if (!source.spacing_x) source.spacing_x = options.spacing;
         if (!source.spacing_y) source.spacing_y = options.spacing;
     }
-    for (const std::string& setting : options.settings) parse_setting(setting, source);
+    for (const std::string& setting : options.settings) add_to_shape(setting, source);
     return terrain::load_terrain_with_provenance(source);
 }
 
@@ -126,9 +126,7 @@ void print_json(const LoadedTerrain& loaded, const std::string& output) {
     object["voids_filled"] = Json::UInt64(info.void_count);
     object["checksum"] = info.checksum;
     object["written"] = output.empty() ? Json::Value() : Json::Value(output);
-    Json::StreamWriterBuilder builder;
-    builder["indentation"] = "  ";
-    fmt::print("{}\n", Json::writeString(builder, object));
+    fmt::print("{}\n", report::to_text(object, true));
 }
 
 void print(const LoadedTerrain& loaded, const Options& options) {

@@ -1,9 +1,9 @@
 // lodbench validate: puts the methods of a plugin to the conformance suite.
 
 #include <fmt/format.h>
-#include <json/json.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -11,7 +11,10 @@
 
 #include "api/error.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "conformance/suite.h"
+#include "report/json.h"
+#include "run/exit_status.h"
 
 namespace lodbench::cli {
 
@@ -25,9 +28,6 @@ struct ValidateOptions {
     bool json = false;
     bool list = false;
 };
-
-constexpr int kPromiseBroken = 1;
-constexpr int kNothingJudged = 4;
 
 void list_checks() {
     for (const conformance::Check& check : conformance::all_checks()) {
@@ -48,32 +48,39 @@ std::vector<conformance::Check> chosen_checks(const ValidateOptions& options) {
 std::vector<run::MethodInfo> chosen_methods(const ValidateOptions& options,
                                             const run::PluginListing& listing) {
     if (options.method.empty()) return listing.methods;
-    std::string known;
-    for (const run::MethodInfo& method : listing.methods) {
-        if (method.id == options.method) return {method};
-        known += (known.empty() ? "" : ", ") + method.id;
-    }
-    throw InputError(fmt::format("--method {}: plugin {} holds {}", options.method, options.plugin, known));
+    return {run::find_method({listing}, options.method, "--method in plugin " + options.plugin)};
 }
 
-std::vector<std::pair<std::string, std::string>> parse_settings(const ValidateOptions& options) {
-    std::vector<std::pair<std::string, std::string>> settings;
-    for (const std::string& text : options.settings) {
-        const std::size_t equals = text.find('=');
-        if (equals == std::string::npos || equals == 0) {
-            throw InputError(fmt::format("--set {}: expected PARAM=VALUE", text));
+/// What --set says of one method.
+run::Settings settings_of(const std::vector<run::Setting>& all, const std::string& method) {
+    run::Settings settings;
+    for (const run::Setting& setting : all) {
+        if (setting.method.empty() || setting.method == method) {
+            settings.emplace_back(setting.name, setting.value);
         }
-        settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
+    return settings;
+}
+
+std::vector<run::Setting> parse_settings(const ValidateOptions& options,
+                                         const std::vector<run::MethodInfo>& methods) {
+    std::vector<run::Setting> settings;
+    for (const std::string& text : options.settings) {
+        settings.push_back(run::parse_setting(text, "[METHOD.]PARAM=VALUE"));
+        const std::string& id = settings.back().method;
+        if (!id.empty() && std::ranges::find(methods, id, &run::MethodInfo::id) == methods.end()) {
+            throw InputError(fmt::format("--set {}: method '{}' is not validated here", text, id));
+        }
     }
     return settings;
 }
 
 /// What to type to see a failure again.
 std::string repeat_command(const ValidateOptions& options, const std::string& method,
-                           const std::string& test) {
+                           const run::Settings& settings, const std::string& test) {
     std::string text = fmt::format("lodbench validate {} --method {} --test {} --seed {}", options.plugin,
                                    method, test, options.seed);
-    for (const std::string& setting : options.settings) text += " --set " + setting;
+    for (const auto& [name, value] : settings) text += fmt::format(" --set {}={}", name, value);
     return text;
 }
 
@@ -88,9 +95,7 @@ void print_line(const ValidateOptions& options, const std::string& method,
         line["reason"] = report.reason;
         line["seconds"] = report.seconds;
         line["seed"] = Json::UInt64(options.seed);
-        Json::StreamWriterBuilder writer;
-        writer["indentation"] = "";
-        fmt::print("{}\n", Json::writeString(writer, line));
+        fmt::print("{}\n", report::to_text(line));
     } else {
         fmt::print("{:<8} {} {} ({:.1f} s){}{}\n", verdict, method, report.check, report.seconds,
                    report.reason.empty() ? "" : ": ", report.reason);
@@ -101,7 +106,7 @@ void print_line(const ValidateOptions& options, const std::string& method,
 int run_validate(const ValidateOptions& options) {
     if (options.list) {
         list_checks();
-        return 0;
+        return run::kAllWell;
     }
     if (options.plugin.empty()) {
         throw InputError("no plugin was named; expected `lodbench validate PLUGIN.so` (or --list)");
@@ -110,7 +115,6 @@ int run_validate(const ValidateOptions& options) {
     const std::filesystem::path plugin = std::filesystem::canonical(options.plugin, error);
     if (error) throw InputError(fmt::format("{}: {}", options.plugin, error.message()));
     const std::vector<conformance::Check> checks = chosen_checks(options);
-    const auto settings = parse_settings(options);
     const run::PluginListing listing = run::list_plugin(plugin);
     if (!listing.refusal.empty()) {
         // A plugin that cannot be listed has broken the first promise of all.
@@ -118,10 +122,13 @@ int run_validate(const ValidateOptions& options) {
         report.check = "loads";
         report.reason = listing.refusal;
         print_line(options, options.method.empty() ? plugin.stem().string() : options.method, report);
-        return kPromiseBroken;
+        return run::kPromiseBroken;
     }
     int passed = 0, failed = 0, skipped = 0;
-    for (const run::MethodInfo& method : chosen_methods(options, listing)) {
+    const std::vector<run::MethodInfo> methods = chosen_methods(options, listing);
+    const std::vector<run::Setting> all_settings = parse_settings(options, methods);
+    for (const run::MethodInfo& method : methods) {
+        const run::Settings settings = settings_of(all_settings, method.id);
         static_cast<void>(run::make_params(method, settings, "--set"));
         for (const conformance::Check& check : checks) {
             const conformance::Subject subject{.method = method,
@@ -135,15 +142,15 @@ int run_validate(const ValidateOptions& options) {
             skipped += report.verdict == conformance::Verdict::skipped;
             print_line(options, method.id, report);
             if (report.verdict == conformance::Verdict::failed && !options.json) {
-                fmt::print("         again: {}\n", repeat_command(options, method.id, check.name));
+                fmt::print("         again: {}\n", repeat_command(options, method.id, settings, check.name));
             }
         }
     }
     if (!options.json) {
         fmt::print("{} passed, {} failed, {} skipped, seed {}\n", passed, failed, skipped, options.seed);
     }
-    if (failed > 0) return kPromiseBroken;
-    return passed > 0 ? 0 : kNothingJudged;
+    if (failed > 0) return run::kPromiseBroken;
+    return passed > 0 ? run::kAllWell : run::kNothingMeasured;
 }
 
 }  // namespace
@@ -154,10 +161,10 @@ void add_validate(CLI::App& app, int& status) {
         app.add_subcommand("validate", "Put a plugin's methods to the promises that every method makes");
     command->add_option("PLUGIN", options->plugin, "the plugin's file");
     command->add_option("--method", options->method, "only this method of the plugin");
-    command->add_option("--test", options->tests, "only this test; may be repeated");
-    command->add_option("--set", options->settings, "PARAM=VALUE for all tests; may be repeated");
+    add_repeated(*command, "--test", options->tests, "only this test");
+    add_repeated(*command, "--set", options->settings, "[METHOD.]PARAM=VALUE for all tests");
     command->add_option("--seed", options->seed, "random cameras and frame numbers come from it; 1");
-    command->add_option("--device", options->device, "GL device, by number or part of its name");
+    add_device(*command, options->device);
     command->add_option("--time-factor", options->time_factor, "stretches each test's time limit; 1")
         ->check(CLI::PositiveNumber);
     command->add_flag("--json", options->json, "print one JSON object a line");

@@ -16,7 +16,7 @@ namespace lodbench::conformance {
 /// What is put to the test. A run is repeated by its seed.
 struct Subject {
     run::MethodInfo method;  ///< its plugin included
-    std::vector<std::pair<std::string, std::string>> settings;
+    run::Settings settings;
     std::string device;  ///< as for platform::Context
     std::uint64_t seed = 1;
 };

@@ -13,6 +13,7 @@
 #include "report/table.h"
 #include "run/cell_record.h"
 #include "run/context.h"
+#include "run/exit_status.h"
 #include "run/run_folder.h"
 #include "run/supervisor.h"
 
@@ -129,9 +130,23 @@ private:
         } catch (const Json::Exception& error) {
             throw InputError(fmt::format("{}: {}", file.string(), error.what()));
         }
+        refuse_other_request(file);
         for (const Json::Value& warning : run_["warnings"]) outcome_.warnings.push_back(warning.asString());
         outcome_.cells = folder_.repair();
         for (const Json::Value& cell : outcome_.cells) finished_.insert(cell["cell"].asString());
+    }
+
+    /// What is asked for beside --resume must be what the run began with: it is flown as it was planned.
+    void refuse_other_request(const fs::path& file) const {
+        if (!request_.names_cells()) return;
+        const Plan asked = make_plan(request_, list_plugins(plugin_folders(request_.plugin_dirs)));
+        const bool same_scenarios =
+            std::ranges::equal(asked.scenarios, plan_.scenarios, {}, &scenario::Scenario::text,
+                               &scenario::Scenario::text);
+        if (same_scenarios && plan_to_json(asked) == run_["cells"]) return;
+        throw InputError(fmt::format("--resume: the other arguments or what they name differ from {}; give "
+                                     "--resume and --out alone, or as it began: {}",
+                                     file.string(), run_["command_line"].asString()));
     }
 
     void fly_cell_at(std::size_t index) {
@@ -209,16 +224,14 @@ private:
 }  // namespace
 
 int CampaignOutcome::exit_status() const {
-    constexpr int kSomeFailed = 3;
-    constexpr int kNothingMeasured = 4;
     const auto has_status = [this](std::initializer_list<const char*> wanted) {
         return std::ranges::any_of(cells, [&](const Json::Value& cell) {
             return std::ranges::any_of(wanted, [&](const char* status) { return cell["status"] == status; });
         });
     };
-    if (has_status({"failed", "crashed", "timeout"})) return kSomeFailed;
+    if (has_status({"failed", "crashed", "timeout"})) return kCellFailed;
     if (!has_status({"ok"})) return kNothingMeasured;
-    return error.empty() ? 0 : kSomeFailed;
+    return error.empty() ? kAllWell : kCellFailed;
 }
 
 CampaignOutcome run_campaign(const RunRequest& request, const fs::path& program,

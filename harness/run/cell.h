@@ -22,7 +22,7 @@ struct CellSpec {
     scenario::Overrides overrides;
     std::string method;
     std::filesystem::path plugin;
-    std::vector<std::pair<std::string, std::string>> settings;
+    Settings settings;
     int repetition = 0;
     std::uint64_t seed = 1;
     std::string device;  ///< as for platform::Context

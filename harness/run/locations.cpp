@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "api/error.h"
 
 namespace lodbench::run {
@@ -12,15 +10,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
+fs::path prefix_of(const fs::path& program) {
+    return program.parent_path().parent_path();
+}
+
+/// Whether it was built there: a prefix below the build folder is an installation like any other.
 bool in_build_tree(const fs::path& program) {
     std::error_code ignored;
     const fs::path build = fs::canonical(LODBENCH_BUILD_DIR, ignored);
-    if (build.empty()) return false;
-    return std::ranges::mismatch(build, program).in1 == build.end();
-}
-
-fs::path prefix_of(const fs::path& program) {
-    return program.parent_path().parent_path();
+    if (build.empty() || prefix_of(program) != build) return false;
+    const fs::path folder = program.parent_path().filename();
+    return folder == "bin" || folder == "tests" || folder == "benchmarks";
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ std::optional<ParamValue> parse(const ParamInfo& param, const std::string& text)
 }  // namespace
 
 Params make_params(const MethodInfo& method,
-                   const std::vector<std::pair<std::string, std::string>>& settings,
+                   const Settings& settings,
                    const std::string& where) {
     Params params;
     for (const ParamInfo& param : method.params) params.set(param.name, default_value(param));

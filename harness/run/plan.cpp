@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Settings = std::vector<std::pair<std::string, std::string>>;
-
 std::vector<std::string> split_values(const std::string& text) {
     std::vector<std::string> values(1);
     for (const char c : text) {
@@ -40,14 +38,10 @@ struct CommandSetting {
 };
 
 CommandSetting read_setting(const std::string& text) {
-    const std::size_t dot = text.find('.');
-    const std::size_t equals = text.find('=');
-    if (dot == text.npos || equals == text.npos || equals < dot || dot == 0 || equals == dot + 1 ||
-        equals + 1 == text.size()) {
-        throw InputError(fmt::format("--set {}: expected METHOD.PARAMETER=VALUE[,VALUE...]", text));
-    }
-    return {text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
-            split_values(text.substr(equals + 1)), "--set " + text};
+    constexpr const char* kForm = "METHOD.PARAMETER=VALUE[,VALUE...]";
+    const Setting setting = parse_setting(text, kForm);
+    if (setting.method.empty()) throw InputError(fmt::format("--set {}: expected {}", text, kForm));
+    return {setting.method, setting.name, split_values(setting.value), "--set " + text};
 }
 
 std::map<std::string, MethodInfo> methods_of(const std::vector<PluginListing>& plugins) {
@@ -56,20 +50,6 @@ std::map<std::string, MethodInfo> methods_of(const std::vector<PluginListing>& p
         for (const MethodInfo& method : plugin.methods) methods.emplace(method.id, method);
     }
     return methods;
-}
-
-const MethodInfo& find_method(const std::map<std::string, MethodInfo>& methods, const std::string& id,
-                              const std::string& where, const std::vector<PluginListing>& plugins) {
-    if (const auto found = methods.find(id); found != methods.end()) return found->second;
-    std::vector<std::string> known;
-    for (const auto& [name, info] : methods) known.push_back(name);
-    std::string message =
-        fmt::format("{}: no method '{}' was found; known: {}", where, id,
-                    known.empty() ? std::string("none") : fmt::format("{}", fmt::join(known, ", ")));
-    for (const PluginListing& plugin : plugins) {
-        if (!plugin.refusal.empty()) message += "; " + plugin.refusal;
-    }
-    throw InputError(message);
 }
 
 /// Of one method over one scenario: more than anyone waits for, and few enough to hold.
@@ -148,6 +128,12 @@ std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scena
 
 }  // namespace
 
+bool RunRequest::names_cells() const {
+    return !scenarios.empty() || !methods.empty() || !settings.empty() || !plugin_dirs.empty() ||
+           !device.empty() || overrides.frames || overrides.viewport || overrides.seed ||
+           overrides.repetitions;
+}
+
 void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {
     std::ranges::stable_sort(cells, {}, [](const PlannedCell& cell) { return cell.spec.repetition; });
     base::SplitMix64 random(seed);
@@ -166,8 +152,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     const std::map<std::string, MethodInfo> methods = methods_of(plugins);
     std::vector<CommandSetting> command;
     for (const std::string& text : request.settings) command.push_back(read_setting(text));
-    std::vector<std::string> chosen = request.methods;
-    for (const std::string& id : chosen) find_method(methods, id, "--method " + id, plugins);
+    for (const std::string& id : request.methods) (void)find_method(plugins, id, "--method " + id);
 
     Plan plan;
     for (const PluginListing& plugin : plugins) {
@@ -186,8 +171,8 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
                                          "name", file.string(), scenario.name));
         }
         const fs::path base = fs::absolute(file).parent_path();
-        for (const auto& wanted : requests_of(scenario, chosen, command, methods)) {
-            const MethodInfo& method = find_method(methods, wanted.id, wanted.where, plugins);
+        for (const auto& wanted : requests_of(scenario, request.methods, command, methods)) {
+            const MethodInfo& method = find_method(plugins, wanted.id, wanted.where);
             used.insert(method.id);
             for (const Settings& settings : combinations(wanted, scenario.repetitions)) {
                 const Params params = make_params(method, settings, wanted.where);
@@ -212,7 +197,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
         plan.scenarios.push_back(std::move(scenario));
     }
     for (const CommandSetting& setting : command) {
-        find_method(methods, setting.method, setting.where, plugins);
+        (void)find_method(plugins, setting.method, setting.where);
         if (!used.contains(setting.method)) {
             throw InputError(fmt::format("{}: method '{}' is not flown in this run; add --method {}",
                                          setting.where, setting.method, setting.method));

@@ -23,6 +23,9 @@ struct RunRequest {
     std::string device;
     std::string command_line;
     bool resume = false;
+
+    /// Whether anything in it says which cells are meant.
+    [[nodiscard]] bool names_cells() const;
 };
 
 struct PlannedCell {

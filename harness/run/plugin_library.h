@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/method.h"
+#include "run/settings.h"
 
 namespace lodbench::run {
 
@@ -51,6 +52,11 @@ struct PluginListing {
     const std::filesystem::path& plugin,
     std::chrono::milliseconds time_limit = std::chrono::seconds(10));
 
+/// The method with this id. Throws InputError, "WHERE: no method 'ID' was found; known: ...", with the words of
+/// each plugin that was refused.
+[[nodiscard]] const MethodInfo& find_method(const std::vector<PluginListing>& plugins,
+                                            const std::string& id, const std::string& where);
+
 /// A plugin that is open in this process (RTLD_NOW | RTLD_LOCAL).
 class PluginLibrary {
 public:
@@ -78,8 +84,7 @@ private:
 
 /// Checks text settings against the specs and fills in defaults. Throws InputError naming `where`, the
 /// parameter, the value and what would be right.
-[[nodiscard]] Params make_params(const MethodInfo& method,
-                                 const std::vector<std::pair<std::string, std::string>>& settings,
+[[nodiscard]] Params make_params(const MethodInfo& method, const Settings& settings,
                                  const std::string& where);
 
 }  // namespace lodbench::run

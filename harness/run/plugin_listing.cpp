@@ -234,4 +234,20 @@ std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
     return listings;
 }
 
+const MethodInfo& find_method(const std::vector<PluginListing>& plugins, const std::string& id,
+                              const std::string& where) {
+    std::set<std::string> known;
+    std::string refusals;
+    for (const PluginListing& plugin : plugins) {
+        for (const MethodInfo& method : plugin.methods) {
+            if (method.id == id) return method;
+            known.insert(method.id);
+        }
+        if (!plugin.refusal.empty()) refusals += "; " + plugin.refusal;
+    }
+    throw InputError(fmt::format("{}: no method '{}' was found; known: {}{}", where, id,
+                                 known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")),
+                                 refusals));
+}
+
 }  // namespace lodbench::run

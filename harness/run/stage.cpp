@@ -16,14 +16,6 @@ namespace {
 
 constexpr float kSky[] = {0.62F, 0.74F, 0.88F, 1.0F};
 
-MethodInfo find_method(const PluginLibrary& library, const StageSetup& setup) {
-    for (MethodInfo& info : library.methods()) {
-        if (info.id == setup.method) return info;
-    }
-    throw InputError(fmt::format("plugin {} holds no method '{}'; `lodbench list` shows what it holds",
-                                 setup.plugin.string(), setup.method));
-}
-
 }  // namespace
 
 Stage::Stage(StageSetup setup, VitalSigns& signs)
@@ -34,7 +26,8 @@ Stage::Stage(StageSetup setup, VitalSigns& signs)
       device_(std::make_unique<gl::Device>()),
       library_((signs.enter(Call::open_plugin), setup_.plugin)) {
     signs_.enter(Call::none);
-    info_ = find_method(library_, setup_);
+    info_ = find_method({{setup_.plugin, library_.methods(), ""}}, setup_.method,
+                        "plugin " + setup_.plugin.string());
     params_ = make_params(info_, setup_.settings, "settings of " + setup_.method);
     for (const std::string& extension : info_.gl_extensions) {
         if (!device_->has_extension(extension)) {

@@ -36,7 +36,7 @@ struct StageSetup {
     std::shared_ptr<const terrain::HeightField> terrain;
     std::filesystem::path plugin;
     std::string method;
-    std::vector<std::pair<std::string, std::string>> settings;
+    Settings settings;
     std::string device;  ///< as for platform::Context
 };
 
@@ -53,6 +53,7 @@ public:
 
     void prepare();
     void upload();
+    /// Nothing when the viewport is the one before.
     void resize(const Viewport& viewport);
     void select(const Camera& camera, const Clock& clock);
     void settle();

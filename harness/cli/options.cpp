@@ -1,0 +1,50 @@
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "api/error.h"
+
+namespace lodbench::cli {
+
+namespace {
+
+Viewport parse_size(const std::string& text) {
+    constexpr int kLargest = 16384;
+    Viewport size;
+    const char* end = text.data() + text.size();
+    const auto width = std::from_chars(text.data(), end, size.width);
+    if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
+        const auto height = std::from_chars(width.ptr + 1, end, size.height);
+        if (height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.height >= 1 &&
+            size.width <= kLargest && size.height <= kLargest) {
+            return size;
+        }
+    }
+    throw InputError(fmt::format("--size {}: expected WIDTHxHEIGHT, each 1..{}, as 640x480", text, kLargest));
+}
+
+}  // namespace
+
+void add_plugin_dirs(CLI::App& command, std::vector<std::filesystem::path>& folders) {
+    add_repeated(command, "--plugin-dir", folders, "folder to search for plugins first");
+}
+
+void add_device(CLI::App& command, std::string& device) {
+    command.add_option("--device", device, "EGL device: number or part of its name, see `lodbench list --devices`");
+}
+
+void add_size(CLI::App& command, std::optional<Viewport>& size) {
+    command
+        .add_option_function<std::string>(
+            "--size", [&size](const std::string& text) { size = parse_size(text); },
+            "viewport in pixels, as 640x480")
+        ->type_name("WIDTHxHEIGHT");
+}
+
+std::vector<run::PluginListing> find_plugins(const std::vector<std::filesystem::path>& plugin_dirs) {
+    return run::list_plugins(run::plugin_folders(plugin_dirs));
+}
+
+}  // namespace lodbench::cli

@@ -1,0 +1,33 @@
+#pragma once
+// The options that several commands take, so that each is called, read and refused alike.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/camera.h"
+#include "run/plugin_library.h"
+
+namespace lodbench::cli {
+
+/// An option that may be given again. Takes one value each time: what follows stays a positional argument.
+template <typename Value>
+CLI::Option* add_repeated(CLI::App& command, const std::string& names, std::vector<Value>& values,
+                          const std::string& help) {
+    return command.add_option(names, values, help + " (again for more)")->allow_extra_args(false);
+}
+
+/// --plugin-dir
+void add_plugin_dirs(CLI::App& command, std::vector<std::filesystem::path>& folders);
+/// --device, as for platform::Context
+void add_device(CLI::App& command, std::string& device);
+/// --size; throws InputError while the command line is read.
+void add_size(CLI::App& command, std::optional<Viewport>& size);
+
+/// What is found in `plugin_dirs` and in the usual folders.
+[[nodiscard]] std::vector<run::PluginListing> find_plugins(
+    const std::vector<std::filesystem::path>& plugin_dirs);
+
+}  // namespace lodbench::cli
