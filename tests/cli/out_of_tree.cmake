@@ -35,6 +35,28 @@ if(NOT output MATCHES "\"id\":\"full-grid\"" OR NOT output MATCHES "${WORK_DIR}/
   stop("the installed program does not find its own plugins:\n${output}")
 endif()
 
+# Files that the two reader modules of the prefix read.
+load_cache(${BUILD_DIR} READ_WITH_PREFIX built_ LODBENCH_WITH_GDAL LODBENCH_WITH_OIIO)
+function(expect_terrain what file)
+  step("${what}" ${lodbench} terrain info ${file})
+  foreach(line IN LISTS ARGN)
+    if(NOT output MATCHES "${line}")
+      stop("${what}: expected ${line} in\n${output}")
+    endif()
+  endforeach()
+endfunction()
+if(built_LODBENCH_WITH_OIIO)
+  file(GLOB_RECURSE puget ${WORK_DIR}/moved/share/*/puget_sound_1025_160m.png)
+  expect_terrain("PNG read by the installed program" "${puget}" "through OpenImageIO"
+                 "1025 rows x 1025 columns" "160 m east" "voids +0 filled")
+endif()
+if(built_LODBENCH_WITH_GDAL)
+  file(WRITE ${WORK_DIR}/small.asc "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 25\n"
+                                   "NODATA_value -9999\n1 2 3\n4 -9999 6\n")
+  expect_terrain("elevation model read by the installed program" ${WORK_DIR}/small.asc "through GDAL"
+                 "2 rows x 3 columns" "25 m east" "voids +1 filled")
+endif()
+
 step("new-method" ${lodbench} new-method hello)
 step("configure" ${CMAKE_COMMAND} -S ${WORK_DIR}/hello -B ${WORK_DIR}/hello/build -G ${GENERATOR}
      -DCMAKE_PREFIX_PATH=${WORK_DIR}/moved)

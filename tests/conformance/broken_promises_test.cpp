@@ -37,6 +37,9 @@ struct Fault {
     const char* test;
     const char* reason;  ///< part of what is said
 };
+void PrintTo(const Fault& fault, std::ostream* stream) {
+    *stream << fault.method << " by " << fault.test;
+}
 
 class BrokenPromise : public testing::TestWithParam<Fault> {};
 

@@ -13,6 +13,7 @@ struct Ground {
     const char* from;     ///< keyframes
     const char* to;
 };
+void PrintTo(const Ground& ground, std::ostream* stream) { *stream << ground.name; }
 
 constexpr const char* kFromSmall = "[100, -50, 700]";
 constexpr const char* kToSmall = "[350, 300, 400]";
@@ -23,9 +24,9 @@ constexpr Ground kGrounds[] = {
      "[87000, 84000, 1300]", "[116500, 78000, 3200]"},
     {"plane", "synthetic = \"plane\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
     {"ramp", "synthetic = \"ramp\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
-    {"sphere_cap", "synthetic = \"sphere-cap\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
-    {"bump", "synthetic = \"bump\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
-    {"step", "synthetic = \"step\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
+    {"sphere_cap", "synthetic = \"sphere-cap\"\nrows = 50\ncolumns = 77\nspacing = [8, 10]", kFromSmall, kToSmall},
+    {"bump", "synthetic = \"bump\"\nrows = 77\ncolumns = 40\nspacing = [10, 7]", kFromSmall, kToSmall},
+    {"step", "synthetic = \"step\"\nrows = 67\ncolumns = 66\nspacing = 10", kFromSmall, kToSmall},
     {"ridged", "synthetic = \"ridged\"\nrows = 257\ncolumns = 257\nspacing = 10", kFromSmall, kToSmall},
     {"ridged_odd", "synthetic = \"ridged\"\nrows = 100\ncolumns = 37\nspacing = 10", kFromSmall, kToSmall},
     {"ridged_oblong", "synthetic = \"ridged\"\nrows = 130\ncolumns = 258\nspacing = [10, 15]", kFromSmall,

@@ -1,0 +1,324 @@
+// `lodbench run` as a person types it: what it prints, the files it writes, and that they agree.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "cli/run_lodbench.h"
+
+namespace lodbench::test {
+namespace {
+
+using testing::HasSubstr;
+using Arguments = std::vector<std::string>;
+
+/// One row of frames/<cell>.csv by column; an empty field is absent.
+using FrameRow = std::map<std::string, double>;
+
+std::vector<std::string> split(const std::string& line) {
+    std::vector<std::string> fields(1);
+    for (const char c : line) {
+        if (c == ',') {
+            fields.emplace_back();
+        } else {
+            fields.back() += c;
+        }
+    }
+    return fields;
+}
+
+class Run : public testing::Test {
+protected:
+    struct Spoken {
+        int status = -1;
+        std::string out, err;
+    };
+
+    /// A terrain of 129 x 129 samples: 2 x 2 blocks of 64 x 64 cells for full-grid. The camera looks straight
+    /// down at all of it first, and leaves it behind in the end.
+    fs::path scenario(const std::string& more = "") {
+        const fs::path file = folder_.path() / "small.toml";
+        std::ofstream(file) << "name = \"small\"\n[terrain]\nsynthetic = \"ridged\"\nrows = 129\n"
+                               "columns = 129\nspacing = 10\n[viewport]\nwidth = 48\nheight = 36\n"
+                               "[flight]\nkind = \"line\"\nframes = 8\nwarmup_frames = 1\n"
+                               "start = [640, 640, 2500]\nend = [4000, 640, 2500]\npitch = -90\n"
+                               "[measure]\nevery = 3\nshots = [0]\n[run]\nrepetitions = 1\n"
+                            << more;
+        return file;
+    }
+    [[nodiscard]] fs::path out(const std::string& name = "out") const { return folder_.path() / name; }
+
+    /// Standard output and error apart.
+    Spoken run(const fs::path& scenario, Arguments more, const fs::path& out) {
+        Arguments arguments = {"run", scenario.string(), "--out", out.string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const fs::path err = folder_.path() / "standard-error";
+        const Finished finished = run_lodbench(arguments, folder_.path(), [&err] {
+            dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), 2);
+        });
+        return {finished.status, finished.output, text_of(err)};
+    }
+
+    static std::vector<FrameRow> frames_of(const fs::path& out, const std::string& cell) {
+        std::ifstream stream(out / "frames" / (cell + ".csv"));
+        std::string line;
+        std::getline(stream, line);
+        const std::vector<std::string> names = split(line);
+        std::vector<FrameRow> rows;
+        while (std::getline(stream, line)) {
+            const std::vector<std::string> fields = split(line);
+            EXPECT_EQ(fields.size(), names.size()) << line;
+            FrameRow& row = rows.emplace_back();
+            for (std::size_t i = 0; i < std::min(fields.size(), names.size()); ++i) {
+                if (!fields[i].empty()) row[names[i]] = std::stod(fields[i]);
+            }
+        }
+        return rows;
+    }
+    static Json::Value run_json(const fs::path& out) {
+        return report::parse_json(text_of(out / "run.json"), "run.json");
+    }
+
+    ScratchFolder folder_;
+};
+
+const Arguments kThree = {"--method", "full-grid", "--method", "lindstrom", "--method", "pgm",
+                          "--set",    "pgm.grid=24"};
+
+Arguments operator+(Arguments first, const Arguments& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+}
+
+TEST_F(Run, table_goes_to_standard_output_and_progress_to_standard_error) {
+    const Spoken spoken = run(scenario(), {"--method", "pgm", "--method", "full-grid", "--set",
+                                           "pgm.grid=24,32"}, out());
+    ASSERT_EQ(spoken.status, 0) << spoken.err;
+    // One row for each method and setting, whatever order they were named and flown in.
+    std::vector<std::size_t> at;
+    for (const char* text : {"small\n", "  method ", "fps (range)", "median ms", "triangles", "GPU MiB",
+                             "\n  full-grid ", "\n  pgm grid=24 ", "\n  pgm grid=32 ", "\nresults ", "\npictures "}) {
+        at.push_back(spoken.out.find(text));
+        ASSERT_NE(at.back(), std::string::npos) << text << " in " << spoken.out;
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(at)) << spoken.out;
+    EXPECT_THAT(spoken.out, HasSubstr(out().string()));
+    EXPECT_THAT(spoken.err, HasSubstr("[3/3] "));
+    EXPECT_EQ(spoken.out.find("[3/3]"), std::string::npos);
+    EXPECT_THAT(text_of(out() / "summary.md"), HasSubstr("| pgm grid=24 | "));
+}
+
+TEST_F(Run, json_is_one_object_with_the_cells_as_they_are_in_the_file) {
+    const Spoken spoken = run(scenario(), kThree + Arguments{"--json"}, out());
+    ASSERT_EQ(spoken.status, 0) << spoken.err;
+    const Json::Value json = report::parse_json(spoken.out, "standard output");
+    EXPECT_EQ(json["out"].asString(), out().string());
+    EXPECT_EQ(json["exit_status"].asInt(), 0);
+    EXPECT_TRUE(json["error"].isNull());
+    EXPECT_TRUE(json["warnings"].isArray());
+    const std::vector<Json::Value> cells = cells_of(out());
+    ASSERT_EQ(json["cells"].size(), cells.size());
+    for (Json::ArrayIndex i = 0; i < json["cells"].size(); ++i) EXPECT_EQ(json["cells"][i], cells[i]);
+}
+
+TEST_F(Run, options_replace_what_the_scenario_says_and_lists_are_swept) {
+    const Spoken spoken =
+        run(scenario("[[method]]\nid = \"full-grid\"\n"),
+            {"--method", "lindstrom", "--set", "lindstrom.tau=1,4", "--set", "lindstrom.culling=false",
+             "--size", "40x30", "--frames", "3", "--repeat", "2", "--seed", "77"}, out());
+    ASSERT_EQ(spoken.status, 0) << spoken.err;
+    std::map<double, std::set<int>> repetitions;
+    for (const Json::Value& cell : cells_of(out())) {
+        EXPECT_EQ(cell["method"].asString(), "lindstrom") << "--method leaves out what the scenario names";
+        EXPECT_EQ(cell["frames"].asInt(), 3);
+        EXPECT_FALSE(cell["params"]["culling"].asBool());
+        EXPECT_EQ(cell["claimed_px"].asDouble(), cell["params"]["tau"].asDouble());
+        EXPECT_EQ(frames_of(out(), cell["cell"].asString()).size(), 3U);
+        repetitions[cell["params"]["tau"].asDouble()].insert(cell["repetition"].asInt());
+    }
+    EXPECT_EQ(repetitions, (std::map<double, std::set<int>>{{1, {0, 1}}, {4, {0, 1}}}));
+    const Json::Value json = run_json(out());
+    EXPECT_EQ(json["seed"].asUInt64(), 77U);
+    EXPECT_EQ(json["scenarios"][0]["frames"].asInt(), 3);
+    EXPECT_EQ(json["scenarios"][0]["width"].asInt(), 40);
+    EXPECT_EQ(json["scenarios"][0]["height"].asInt(), 30);
+    EXPECT_EQ(json["scenarios"][0]["repetitions"].asInt(), 2);
+}
+
+TEST_F(Run, pictures_and_wireframes_are_whole_png_of_the_size_asked_for) {
+    const Spoken spoken = run(scenario(), kThree + Arguments{"--size", "40x30", "--frames", "2"}, out());
+    ASSERT_EQ(spoken.status, 0) << spoken.err;
+    std::set<std::string> names;
+    std::string check = "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/check_png.py 40 30";
+    for (const auto& file : fs::directory_iterator(out() / "shots")) {
+        names.insert(file.path().filename().string());
+        check += " '" + file.path().string() + "'";
+    }
+    EXPECT_EQ(std::system(check.c_str()), 0);
+    EXPECT_EQ(names, (std::set<std::string>{
+                         "full-grid__small__r0__f00000.png", "full-grid__small__r0__f00000__wireframe.png",
+                         "lindstrom__small__r0__f00000.png", "lindstrom__small__r0__f00000__wireframe.png",
+                         "pgm__grid=24__small__r0__f00000.png",
+                         "pgm__grid=24__small__r0__f00000__wireframe.png"}));
+    EXPECT_NE(text_of(out() / "shots" / "full-grid__small__r0__f00000.png"),
+              text_of(out() / "shots" / "full-grid__small__r0__f00000__wireframe.png"));
+}
+
+TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
+    ASSERT_EQ(run(scenario(), kThree, out()).status, 0);
+    const std::vector<Json::Value> cells = cells_of(out());
+    ASSERT_EQ(cells.size(), 3U);
+    for (const Json::Value& cell : cells) {
+        for (const char* text : {"cell", "method", "scenario", "status", "terrain", "terrain_checksum",
+                                 "timer_verdict", "depth_hash"}) {
+            EXPECT_TRUE(cell[text].isString() && !cell[text].asString().empty()) << text;
+        }
+        for (const char* number : {"repetition", "frames", "fps", "prepare_s", "gpu_bytes", "peak_rss_bytes"}) {
+            EXPECT_TRUE(cell[number].isNumeric()) << number;
+        }
+        for (const char* time : {"frame_ms", "select_ms", "submit_ms", "gpu_ms", "cpu_ms"}) {
+            if (std::string(time) == "gpu_ms" && cell[time].isNull()) continue;  // no timer to believe
+            EXPECT_TRUE(cell[time]["mean"].isNumeric()) << time;
+            EXPECT_TRUE(cell[time]["median"].isNumeric()) << time;
+            for (const char* part : {"p90", "p95", "p99", "p999", "low1"}) {
+                EXPECT_TRUE(cell[time].isMember(part)) << time << part;
+                EXPECT_TRUE(cell[time][part].isNull()) << "8 frames do not support " << part;
+            }
+        }
+        for (const char* count : {"triangles", "triangles_nondegenerate", "draw_calls", "uploaded_bytes"}) {
+            for (const char* part : {"mean", "min", "max"}) {
+                EXPECT_TRUE(cell[count][part].isNumeric()) << count << part;
+            }
+        }
+        EXPECT_TRUE(cell["prepare_cached"].isBool());
+        EXPECT_TRUE(cell["params"].isObject());
+        EXPECT_TRUE(cell["counters"].isObject());
+        for (const char* later :
+             {"screen_error_px", "visible_error_px", "pixel_error_px", "pixel_error_realtime_px",
+              "crack_pixels", "skirt_pixels", "uncovered_samples", "silhouette_px", "popping_px",
+              "height_rmse_m", "image", "bound_honesty", "reason"}) {
+            EXPECT_TRUE(cell.isMember(later)) << later;
+            EXPECT_TRUE(cell[later].isNull()) << later;
+        }
+        EXPECT_TRUE(cell.isMember("claimed_px"));
+        EXPECT_EQ(cell["claimed_px"].isNull(), cell["method"] != "lindstrom");
+    }
+}
+
+TEST_F(Run, statistics_of_a_cell_are_those_of_its_frames) {
+    constexpr int kFrames = 200;  // as many as P95 needs
+    ASSERT_EQ(run(scenario(), {"--method", "full-grid", "--frames", std::to_string(kFrames)}, out()).status, 0);
+    const Json::Value cell = cells_of(out()).at(0);
+    const std::vector<FrameRow> frames = frames_of(out(), cell["cell"].asString());
+    ASSERT_EQ(frames.size(), std::size_t(kFrames));
+    std::vector<double> wall, triangles;
+    std::size_t measured = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        EXPECT_EQ(frames[i].at("frame"), double(i));
+        wall.push_back(frames[i].at("wall_ms"));
+        triangles.push_back(frames[i].at("triangles"));
+        measured += frames[i].contains("triangles_nondegenerate");
+        EXPECT_EQ(frames[i].contains("triangles_nondegenerate"), i % 3 == 0) << "every = 3";
+    }
+    EXPECT_EQ(measured, 67U);
+    std::ranges::sort(wall);
+    const double mean = std::accumulate(wall.begin(), wall.end(), 0.0) / kFrames;
+    // The smallest time such that at least p percent of all are not above it.
+    const auto nearest_rank = [&](int percent) { return wall[std::size_t((kFrames * percent + 99) / 100 - 1)]; };
+    const Json::Value& times = cell["frame_ms"];
+    const double rounding = 1e-12 * wall.back();  // written with 15 digits
+    EXPECT_NEAR(cell["fps"].asDouble(), 1000 / mean, 1e-12 * 1000 / mean);
+    EXPECT_NEAR(times["mean"].asDouble(), mean, rounding);
+    EXPECT_NEAR(times["median"].asDouble(), (wall[99] + wall[100]) / 2, rounding);
+    EXPECT_NEAR(times["p90"].asDouble(), nearest_rank(90), rounding);
+    EXPECT_NEAR(times["p95"].asDouble(), nearest_rank(95), rounding);
+    EXPECT_TRUE(times["p99"].isNull()) << "needs 1000 frames";
+    EXPECT_NEAR(times["min"].asDouble(), wall.front(), rounding);
+    EXPECT_NEAR(times["max"].asDouble(), wall.back(), rounding);
+    EXPECT_NEAR(times["low1"].asDouble(), (wall[198] + wall[199]) / 2, rounding);
+    EXPECT_EQ(cell["triangles"]["max"].asDouble(), *std::ranges::max_element(triangles));
+    EXPECT_EQ(cell["triangles"]["min"].asDouble(), *std::ranges::min_element(triangles));
+}
+
+TEST_F(Run, full_grid_draws_exactly_the_triangles_of_its_visible_blocks) {
+    ASSERT_EQ(run(scenario(), {"--method", "full-grid"}, out()).status, 0);
+    const Json::Value cell = cells_of(out()).at(0);
+    constexpr double kBlock = 2 * 64 * 64;
+    EXPECT_EQ(cell["counters"]["blocks_total"].asDouble(), 4);
+    EXPECT_EQ(cell["triangles"]["mean"].asDouble(), kBlock * cell["counters"]["blocks_visible"].asDouble());
+    const std::vector<FrameRow> frames = frames_of(out(), cell["cell"].asString());
+    ASSERT_EQ(frames.size(), 8U);
+    EXPECT_EQ(frames.front().at("triangles"), 4 * kBlock) << "all of the terrain is in sight";
+    EXPECT_EQ(frames.back().at("triangles"), 0) << "the terrain is out of sight";
+    for (const FrameRow& frame : frames) {
+        EXPECT_EQ(frame.at("triangles"), kBlock * int(frame.at("triangles") / kBlock));
+    }
+}
+
+TEST_F(Run, one_seed_gives_the_same_order_counts_and_pictures_twice) {
+    const fs::path file = scenario();
+    const Arguments seeded = kThree + Arguments{"--seed", "5"};
+    ASSERT_EQ(run(file, seeded, out("first")).status, 0);
+    ASSERT_EQ(run(file, seeded, out("second")).status, 0);
+    const std::vector<Json::Value> first = cells_of(out("first")), second = cells_of(out("second"));
+    ASSERT_EQ(first.size(), 3U);
+    ASSERT_EQ(second.size(), 3U);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        const std::string cell = first[i]["cell"].asString();
+        EXPECT_EQ(cell, second[i]["cell"].asString()) << "the order of the cells";
+        EXPECT_EQ(first[i]["depth_hash"], second[i]["depth_hash"]) << cell;
+        const std::vector<FrameRow> a = frames_of(out("first"), cell), b = frames_of(out("second"), cell);
+        ASSERT_EQ(a.size(), 8U);
+        ASSERT_EQ(b.size(), 8U);
+        for (std::size_t frame = 0; frame < a.size(); ++frame) {
+            for (const char* count : {"triangles", "draw_calls", "uploaded_bytes"}) {
+                EXPECT_EQ(a[frame].at(count), b[frame].at(count)) << cell << ", frame " << frame << ": " << count;
+            }
+        }
+    }
+    ASSERT_EQ(run(file, kThree + Arguments{"--seed", "6", "--frames", "1"}, out("other")).status, 0);
+    const auto order_of = [this](const std::string& name) {
+        std::vector<std::string> order;
+        for (const Json::Value& cell : cells_of(out(name))) order.push_back(cell["cell"].asString());
+        return order;
+    };
+    const std::vector<std::string> order = order_of("first"), other = order_of("other");
+    EXPECT_NE(order, other) << "another seed gives another order";
+    EXPECT_THAT(order, testing::UnorderedElementsAreArray(other));
+}
+
+TEST_F(Run, run_json_holds_the_whole_context) {
+    const fs::path file = scenario();
+    ASSERT_EQ(run(file, {"--method", "lindstrom"}, out()).status, 0);
+    const Json::Value json = run_json(out());
+    EXPECT_TRUE(json["schema_version"].isNumeric());
+    for (const char* text : {"tool_version", "compiler", "abi_tag", "os", "kernel", "cpu", "command_line"}) {
+        EXPECT_TRUE(json[text].isString() && !json[text].asString().empty()) << text;
+    }
+    for (const char* member : {"commit", "build_type"}) EXPECT_TRUE(json.isMember(member)) << member;
+    EXPECT_THAT(json["command_line"].asString(), HasSubstr("run " + file.string()));
+    EXPECT_GE(json["cores"].asInt(), 1);
+    for (const char* text : {"vendor", "renderer", "version", "device", "timer_verdict"}) {
+        EXPECT_TRUE(json["gl"][text].isString() && !json["gl"][text].asString().empty()) << text;
+    }
+    EXPECT_TRUE(json["gl"]["software"].isBool());
+    EXPECT_EQ(json["scenarios"][0]["text"].asString(), text_of(file));
+    EXPECT_EQ(text_of(out() / "scenarios" / "small.toml"), text_of(file));
+    EXPECT_EQ(json["seed"].asUInt64(), 1U);
+    EXPECT_TRUE(json["warnings"].isArray());
+    EXPECT_GE(json["plugins"].size(), 3U);
+    EXPECT_EQ(json["cells"].size(), 1U);
+    // Every parameter with its value, the ones left alone too.
+    const Json::Value cell = cells_of(out()).at(0);
+    for (const char* name : {"tau", "culling", "error", "metric"}) {
+        EXPECT_TRUE(cell["params"].isMember(name)) << name;
+    }
+}
+
+}  // namespace
+}  // namespace lodbench::test
