@@ -1,0 +1,90 @@
+// Options and words of the command line mean the same to every command.
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include "run_lodbench.h"
+
+namespace lodbench::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(CommandLine, names_the_word_that_is_no_command_and_the_commands) {
+    const ScratchFolder folder;
+    const Finished top = run_lodbench({"fly"}, folder.path());
+    EXPECT_EQ(top.status, 2);
+    EXPECT_THAT(top.output, HasSubstr("there is no command 'fly'; known: list, describe, run"));
+    EXPECT_THAT(top.output, Not(HasSubstr("cell"))) << "the hidden command stays hidden";
+    EXPECT_THAT(run_lodbench({"terrain", "fly"}, folder.path()).output,
+                HasSubstr("there is no command 'fly'; known: info, import, synth"));
+}
+
+TEST(CommandLine, a_repeatable_option_leaves_what_follows_its_value_alone) {
+    const ScratchFolder folder;
+    const std::string plugins = LODBENCH_PLUGINS;
+    const Finished described =
+        run_lodbench({"describe", "--plugin-dir", plugins, "full-grid"}, folder.path());
+    EXPECT_EQ(described.status, 0) << described.output;
+    const std::string out = (folder.path() / "m.ply").string();
+    const Finished mesh = run_lodbench({"mesh", "--plugin-dir", plugins, "--set", "template.step=4", "template",
+                                        "--scenario", tiny_scenario(folder.path(), "").string(), "-o", out},
+                                       folder.path());
+    EXPECT_EQ(mesh.status, 0) << mesh.output;
+}
+
+TEST(CommandLine, an_unknown_method_is_refused_alike_by_every_command) {
+    const ScratchFolder folder;
+    const std::string words = "no method 'nope' was found; known: full-grid, lindstrom, pgm, template";
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"describe", "nope"}, {"mesh", "nope", "-o", "m.ply"},
+          {"run", "--method", "nope", "--out", (folder.path() / "out").string()}}) {
+        const Finished finished = run_lodbench(arguments, folder.path());
+        EXPECT_EQ(finished.status, 2);
+        EXPECT_THAT(finished.output, HasSubstr(words));
+    }
+}
+
+TEST(Resume, refuses_arguments_that_contradict_the_run_and_takes_the_same_again) {
+    const ScratchFolder folder;
+    const std::string scenario = tiny_scenario(folder.path(), "repetitions = 1\n").string();
+    const std::string out = (folder.path() / "out").string();
+    const std::vector<std::string> began = {"run", scenario, "--method", "full-grid", "--out", out};
+    ASSERT_EQ(run_lodbench(began, folder.path()).status, 0);
+    const auto again = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments = began;
+        more.emplace_back("--resume");
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_lodbench(arguments, folder.path());
+    };
+    EXPECT_EQ(again({}).status, 0);
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"--frames", "1"}, {"--seed", "7"}, {"--method", "pgm"},
+          {"--set", "full-grid.tile_samples=100"}, {"--repeat", "2"}, {"--size", "8x8"}}) {
+        const Finished finished = again(more);
+        EXPECT_EQ(finished.status, 2) << more.front() << finished.output;
+        EXPECT_THAT(finished.output, HasSubstr("run.json; give --resume and --out alone, or as it began: "));
+    }
+    EXPECT_EQ(cells_of(out).size(), 1U) << "no cell was added";
+}
+
+TEST(Output, a_missing_folder_is_named_and_what_is_no_regular_file_stays) {
+    const ScratchFolder folder;
+    const std::string scenario = tiny_scenario(folder.path(), "").string();
+    const auto mesh = [&](const std::string& out) {
+        return run_lodbench({"mesh", "full-grid", "--scenario", scenario, "-o", out}, folder.path());
+    };
+    const Finished missing = mesh((folder.path() / "none" / "m.ply").string());
+    EXPECT_EQ(missing.status, 4);
+    EXPECT_THAT(missing.output, HasSubstr("No such file or directory; does its folder exist?"));
+    const std::string pipe = (folder.path() / "pipe").string();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const Finished special = mesh(pipe);
+    EXPECT_EQ(special.status, 4);
+    EXPECT_THAT(special.output, HasSubstr("it is not a regular file"));
+    EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+}  // namespace
+}  // namespace lodbench::test
