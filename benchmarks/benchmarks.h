@@ -19,7 +19,8 @@ double seconds_of(const Work& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// `lindstrom`: error preprocessing in ns per sample, refinement in triangles per second on one core.
+/// `lindstrom`: error preprocessing in ns per sample, refinement in triangles per second on one
+/// core.
 void lindstrom_cost(const Options& options);
 
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.

@@ -1,5 +1,5 @@
-// What the harness itself adds to a frame: a method that does nothing, and `full-grid`, flown in turns over the
-// embedded scenario.
+// What the harness itself adds to a frame: a method that does nothing, and `full-grid`, flown in
+// turns over the embedded scenario.
 
 #include <fmt/format.h>
 
@@ -24,7 +24,8 @@ struct Flown {
 
 class Aircraft {
 public:
-    Aircraft(const scenario::Scenario& scenario, std::shared_ptr<const terrain::HeightField> terrain,
+    Aircraft(const scenario::Scenario& scenario,
+             std::shared_ptr<const terrain::HeightField> terrain,
              const std::filesystem::path& plugin, const std::string& method)
         : scenario_(scenario),
           path_(scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain)),
@@ -79,11 +80,10 @@ void harness_cost() {
     std::vector<double> nothing_wall, nothing_host, grid_wall;
     for (int round = 0; round < 3; ++round) {
         // One context at a time is current on a thread: each flies and goes.
-        const Flown nothing =
-            Aircraft(scenario, terrain, LODBENCH_NOTHING_PLUGIN, "nothing").fly();
-        const Flown grid = Aircraft(scenario, terrain,
-                                    run::default_plugin_folder() / "full_grid.so", "full-grid")
-                               .fly();
+        const Flown nothing = Aircraft(scenario, terrain, LODBENCH_NOTHING_PLUGIN, "nothing").fly();
+        const Flown grid =
+            Aircraft(scenario, terrain, run::default_plugin_folder() / "full_grid.so", "full-grid")
+                .fly();
         nothing_wall.insert(nothing_wall.end(), nothing.wall_ms.begin(), nothing.wall_ms.end());
         nothing_host.insert(nothing_host.end(), nothing.host_ms.begin(), nothing.host_ms.end());
         grid_wall.insert(grid_wall.end(), grid.wall_ms.begin(), grid.wall_ms.end());

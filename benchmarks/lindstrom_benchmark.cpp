@@ -41,7 +41,8 @@ void preprocess(const Terrain& terrain, const Options& options) {
                    best * 1e9 / double(grid.vertex_count()));
         return best;
     };
-    const int all = int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    const int all =
+        int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
     const auto by_level = [&] { compute_errors_by_level(grid, ErrorKind::midpoint); };
     print("read and pad", 1, [&] { LebGrid again(terrain); });
     const double serial = print("errors level by level", 1, by_level);
@@ -73,10 +74,12 @@ void refine(const Terrain& terrain, const Options& options) {
                     lowest = std::min(lowest, triangles / seconds);
                     best = std::max(best, triangles / seconds);
                 }
-                fmt::print("  {:<9} culling {:<3} tau {:<4} {:9.0f} triangles a frame  {:6.1f} M triangles/s "
-                           "(lowest {:.1f})\n",
-                           metric == Metric::planar ? "planar" : "euclidean", culling ? "on" : "off",
-                           tau, triangles / double(cameras.size()), best / 1e6, lowest / 1e6);
+                fmt::print(
+                    "  {:<9} culling {:<3} tau {:<4} {:9.0f} triangles a frame  {:6.1f} M "
+                    "triangles/s "
+                    "(lowest {:.1f})\n",
+                    metric == Metric::planar ? "planar" : "euclidean", culling ? "on" : "off", tau,
+                    triangles / double(cameras.size()), best / 1e6, lowest / 1e6);
                 std::fflush(stdout);
             }
         }
@@ -91,8 +94,8 @@ void lindstrom_cost(const Options& options) {
     source.rows = options.size;
     source.columns = options.size;
     const std::unique_ptr<terrain::HeightField> terrain = terrain::load_terrain(source);
-    fmt::print("lindstrom, ridged terrain of {} x {} samples, heights {:.0f} .. {:.0f} m\n", options.size,
-               options.size, terrain->info().min_height, terrain->info().max_height);
+    fmt::print("lindstrom, ridged terrain of {} x {} samples, heights {:.0f} .. {:.0f} m\n",
+               options.size, options.size, terrain->info().min_height, terrain->info().max_height);
     preprocess(*terrain, options);
     fmt::print("lindstrom, refinement on one core, 1280 x 960\n");
     refine(*terrain, options);

@@ -16,8 +16,10 @@ int main(int argc, char** argv) {
     std::vector<std::string> subjects = {"harness", "lindstrom"};
     app.add_option("subjects", subjects, "harness, lindstrom; all when none is named")
         ->check(CLI::IsMember({"harness", "lindstrom"}));
-    app.add_option("--size", options.size, "samples a side of the terrain")->check(CLI::Range(3, 32769));
-    app.add_option("--frames", options.frames, "cameras of a repetition")->check(CLI::Range(1, 10000));
+    app.add_option("--size", options.size, "samples a side of the terrain")
+        ->check(CLI::Range(3, 32769));
+    app.add_option("--frames", options.frames, "cameras of a repetition")
+        ->check(CLI::Range(1, 10000));
     app.add_option("--repetitions", options.repetitions)->check(CLI::Range(1, 1000));
     CLI11_PARSE(app, argc, argv);
     const auto wanted = [&](const char* subject) {

@@ -45,7 +45,8 @@ inline bool has_numpy() {
 }
 
 inline Outcome check_mesh(const std::string& arguments) {
-    return run_command(std::string(kPython) + LODBENCH_SOURCE_DIR "/tests/check_mesh.py " + arguments);
+    return run_command(std::string(kPython) + LODBENCH_SOURCE_DIR "/tests/check_mesh.py " +
+                       arguments);
 }
 
 inline std::string read_bytes(const std::filesystem::path& path) {
@@ -69,19 +70,23 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    /// A flight of three frames over the terrain table's terrain; keyframes are lists of TOML as positions.
+    /// A flight of three frames over the terrain table's terrain; keyframes are lists of TOML as
+    /// positions.
     std::string scenario(const std::string& terrain, const std::string& from, const std::string& to,
                          int pitch = -35, const std::string& more = "") {
         const auto path = folder_ / "scenario.toml";
         write_bytes(path, "[terrain]\n" + terrain +
                               "\n[viewport]\nwidth = 320\nheight = 240\n"
                               "[flight]\nkind = \"spline\"\nframes = 3\nwarmup_frames = 0\n"
-                              "[[flight.keyframe]]\nposition = " + from + "\nheading = 30\npitch = " +
-                              std::to_string(pitch) + "\n[[flight.keyframe]]\nposition = " + to +
+                              "[[flight.keyframe]]\nposition = " +
+                              from + "\nheading = 30\npitch = " + std::to_string(pitch) +
+                              "\n[[flight.keyframe]]\nposition = " + to +
                               "\nheading = 40\npitch = " + std::to_string(pitch) + "\n" + more);
         return path.string();
     }
-    [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string file(const std::string& name) const {
+        return (folder_ / name).string();
+    }
 
     std::filesystem::path folder_;
 };

@@ -63,7 +63,8 @@ struct Camera {
 
 /// What a method draws through: a float matrix relative to an origin in double, so that world
 /// coordinates never reach the GPU as float. For the picture the matrix is
-/// `Camera::clip_from_relative()`; for a capture it is a power of two times the identity and w is 1.
+/// `Camera::clip_from_relative()`; for a capture it is a power of two times the identity and w
+/// is 1.
 struct View {
     glm::dvec3 origin{0.0};
     glm::mat4 clip_from_relative{1.0F};

@@ -2,10 +2,10 @@
 // The interface between lodbench and a level-of-detail method.
 //
 // A plugin is a shared object with ONE exported symbol, the constant `lodbench_plugin`: plain data
-// that says what the plugin holds, readable without running a line of the plugin's code. Behind each
-// entry stands a class derived from `Method`, since host and plugins share a compiler; the descriptor
-// carries a tag of compiler, standard library and interface, and a mismatch is refused before any
-// call.
+// that says what the plugin holds, readable without running a line of the plugin's code. Behind
+// each entry stands a class derived from `Method`, since host and plugins share a compiler; the
+// descriptor carries a tag of compiler, standard library and interface, and a mismatch is refused
+// before any call.
 //
 //     class MyMethod : public lodbench::Method { ... };
 //     constexpr lodbench::ParamSpec kParams[] = {lodbench::real_param("tau", 1, 0.01, 100, "...")};
@@ -47,14 +47,15 @@ using Counters = std::vector<std::pair<std::string, double>>;
 
 /// A level-of-detail method. Created, called and destroyed on one thread.
 ///
-/// `select` decides what to draw and freezes it; `draw` draws that frozen selection through any view
-/// it is given, any number of times, with identical results. Culling, snapping, tessellation factors
-/// and grid mapping depend on the selected camera alone (`Frozen` block), never on the view.
+/// `select` decides what to draw and freezes it; `draw` draws that frozen selection through any
+/// view it is given, any number of times, with identical results. Culling, snapping, tessellation
+/// factors and grid mapping depend on the selected camera alone (`Frozen` block), never on the
+/// view.
 ///
 /// Every member may throw: the cell then ends as failed, with the plugin, the call and the message.
 /// After each call the pipeline state that the host had set (framebuffer, viewport, depth, blend,
-/// culling, masks, polygon mode, clip distances, pixel store) must be as it was found; bound program,
-/// vertex array, textures and buffers at binding points from 2 up are free.
+/// culling, masks, polygon mode, clip distances, pixel store) must be as it was found; bound
+/// program, vertex array, textures and buffers at binding points from 2 up are free.
 class Method {
 public:
     Method() = default;
@@ -74,8 +75,9 @@ public:
     /// Decides what to draw for this camera. [gl] [timed: select]
     virtual void select(const Camera& camera, const Clock& clock) = 0;
 
-    /// Draws the frozen selection. The uniform blocks `Frame` (this view) and `Frozen` (the selected
-    /// camera) are filled and bound by the host; see shaders/common. [gl] [timed: submit, GPU]
+    /// Draws the frozen selection. The uniform blocks `Frame` (this view) and `Frozen` (the
+    /// selected camera) are filled and bound by the host; see shaders/common. [gl] [timed: submit,
+    /// GPU]
     virtual void draw(const View& view) = 0;
 
     /// Lockstep: waits until this frame's background work is in the selection. [gl] [timed: never]
@@ -108,10 +110,10 @@ struct CreateError {
 /// One method of a plugin. Plain data with static storage; strings are UTF-8 and never null unless
 /// said so.
 struct MethodDescriptor {
-    const char* id;        ///< [a-z0-9-]+, unique among all plugins
-    const char* title;     ///< one line
-    const char* citation;  ///< authors, year, title; "" for a baseline without a paper
-    const char* version;   ///< changes whenever results may change
+    const char* id;                    ///< [a-z0-9-]+, unique among all plugins
+    const char* title;                 ///< one line
+    const char* citation;              ///< authors, year, title; "" for a baseline without a paper
+    const char* version;               ///< changes whenever results may change
     std::uint32_t capabilities;        ///< bits of Capability
     const char* const* gl_extensions;  ///< beyond OpenGL 4.5 core, null-terminated; may be nullptr
     const ParamSpec* params;
@@ -160,9 +162,10 @@ inline void destroy_method(Method* method) noexcept {
 
 }  // namespace lodbench
 
-/// Exports the plugin's methods: `methods` is a constexpr array of MethodDescriptor. Once per plugin.
-#define LODBENCH_PLUGIN(methods_)                                                               \
-    extern "C" __attribute__((visibility("default"))) constexpr lodbench::PluginDescriptor      \
-        lodbench_plugin = {lodbench::kAbi,       sizeof(lodbench::PluginDescriptor),            \
-                           lodbench::kAbiTag,    methods_,                                      \
-                           std::size(methods_), sizeof(lodbench::MethodDescriptor)}
+/// Exports the plugin's methods: `methods` is a constexpr array of MethodDescriptor. Once per
+/// plugin.
+#define LODBENCH_PLUGIN(methods_)                                                             \
+    extern "C" __attribute__((                                                                \
+        visibility("default"))) constexpr lodbench::PluginDescriptor lodbench_plugin = {      \
+        lodbench::kAbi,      sizeof(lodbench::PluginDescriptor), lodbench::kAbiTag, methods_, \
+        std::size(methods_), sizeof(lodbench::MethodDescriptor)}

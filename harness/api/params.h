@@ -29,8 +29,9 @@ constexpr ParamSpec boolean_param(const char* name, bool value, const char* help
 }
 constexpr ParamSpec integer_param(const char* name, int value, int minimum, int maximum,
                                   const char* help) {
-    return {name,    ParamType::integer, double(value), double(minimum), double(maximum),
-            nullptr, nullptr,            help};
+    return {
+        name, ParamType::integer, double(value), double(minimum), double(maximum), nullptr, nullptr,
+        help};
 }
 constexpr ParamSpec real_param(const char* name, double value, double minimum, double maximum,
                                const char* help) {

@@ -21,14 +21,14 @@ struct SampleRect {
 /// What is known of a terrain without reading a sample of it.
 struct TerrainInfo {
     std::string name;
-    int rows = 0;                    ///< >= 2
-    int columns = 0;                 ///< >= 2
-    glm::dvec2 spacing{1.0};         ///< metres between columns (x) and between rows (y), > 0
-    glm::dvec2 origin{0.0};          ///< world x, y of sample (rows - 1, 0), the south-west corner
-    float min_height = 0;            ///< metres
-    float max_height = 0;            ///< metres
-    std::uint64_t void_count = 0;    ///< samples that had no data and were filled
-    std::string checksum;            ///< of the grid as served: 16 hex digits
+    int rows = 0;                  ///< >= 2
+    int columns = 0;               ///< >= 2
+    glm::dvec2 spacing{1.0};       ///< metres between columns (x) and between rows (y), > 0
+    glm::dvec2 origin{0.0};        ///< world x, y of sample (rows - 1, 0), the south-west corner
+    float min_height = 0;          ///< metres
+    float max_height = 0;          ///< metres
+    std::uint64_t void_count = 0;  ///< samples that had no data and were filled
+    std::string checksum;          ///< of the grid as served: 16 hex digits
 
     [[nodiscard]] glm::dvec2 extent_min() const { return origin; }
     [[nodiscard]] glm::dvec2 extent_max() const {

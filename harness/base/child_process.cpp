@@ -41,7 +41,8 @@ void FileDescriptor::close() {
 FileDescriptor memory_file(const char* label) {
     FileDescriptor file(memfd_create(label, MFD_CLOEXEC));
     if (!file) {
-        throw EnvironmentError(fmt::format("cannot make a file in memory: {}", std::strerror(errno)));
+        throw EnvironmentError(
+            fmt::format("cannot make a file in memory: {}", std::strerror(errno)));
     }
     return file;
 }
@@ -115,9 +116,11 @@ bool ChildProcess::reap() {
     if (reaped_) return true;
     int status = 0;
     pid_t got = 0;
-    // The id belongs to the child until it is reaped: kill what it left behind in its group before that.
+    // The id belongs to the child until it is reaped: kill what it left behind in its group before
+    // that.
     siginfo_t info{};
-    if (waitid(P_PID, id_t(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == 0) return false;
+    if (waitid(P_PID, id_t(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == 0)
+        return false;
     kill_group();
     while ((got = waitpid(pid_, &status, 0)) < 0 && errno == EINTR) {
     }

@@ -42,23 +42,25 @@ struct ChildEnding {
     [[nodiscard]] std::string words() const;
 };
 
-/// A child in a process group of its own. Dies with the parent (PR_SET_PDEATHSIG); destroyed, it is killed
-/// with its group and reaped.
+/// A child in a process group of its own. Dies with the parent (PR_SET_PDEATHSIG); destroyed, it is
+/// killed with its group and reaped.
 class ChildProcess {
 public:
-    /// Runs `body` in a fork of this process and ends it with its result, without exit handlers. Throws
-    /// EnvironmentError.
+    /// Runs `body` in a fork of this process and ends it with its result, without exit handlers.
+    /// Throws EnvironmentError.
     explicit ChildProcess(const std::function<int()>& body);
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
-    /// Waits until the child ends, `readable` (a descriptor, or -1) has data, or the time is over. True once
-    /// the child has ended.
+    /// Waits until the child ends, `readable` (a descriptor, or -1) has data, or the time is over.
+    /// True once the child has ended.
     bool wait(std::chrono::milliseconds time, int readable = -1);
     void kill_group();
     [[nodiscard]] pid_t pid() const { return pid_; }
-    [[nodiscard]] const ChildEnding& ending() const { return ending_; }  ///< valid once wait() gave true
+    [[nodiscard]] const ChildEnding& ending() const {
+        return ending_;
+    }  ///< valid once wait() gave true
 
 private:
     bool reap();

@@ -1,6 +1,6 @@
 #pragma once
-// The two hashes of the house: one names what lies in memory, the other draws numbers. Both give the same on
-// every machine, which the standard library's do not promise.
+// The two hashes of the house: one names what lies in memory, the other draws numbers. Both give
+// the same on every machine, which the standard library's do not promise.
 
 #include <cstdint>
 #include <limits>
@@ -36,7 +36,8 @@ inline constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15ULL;
     return bits ^ (bits >> 31U);
 }
 
-/// Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014; its finaliser by Stafford.
+/// Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014; its finaliser by
+/// Stafford.
 class SplitMix64 {
 public:
     explicit SplitMix64(std::uint64_t seed) : state_(seed) {}

@@ -13,8 +13,8 @@ namespace lodbench::base {
 
 namespace {
 
-// What the child writes: one letter for the ending, the text, and a full stop that tells a whole answer from
-// one that was cut short.
+// What the child writes: one letter for the ending, the text, and a full stop that tells a whole
+// answer from one that was cut short.
 constexpr char kAnswered = 'a', kRefused = 'r', kNoMeans = 'm', kThrew = 't', kStop = '.';
 
 std::string answer_of(const std::function<std::string()>& work) {
@@ -53,7 +53,8 @@ Answer run_isolated(double seconds, const std::function<std::string()>& work) {
         ended = child.wait(std::min(left, std::chrono::milliseconds(1000)));
     }
     const std::string text = read_all(file);
-    // A child that answers and dies on its way out (a plugin's thread, say) has not kept its promise either.
+    // A child that answers and dies on its way out (a plugin's thread, say) has not kept its
+    // promise either.
     if (!child.ending().well() || text.size() < 2 || text.back() != kStop) {
         return {Ending::died, fmt::format("ended before it answered: {}", child.ending().words())};
     }

@@ -21,9 +21,9 @@ struct Answer {
     std::string text;
 };
 
-/// Runs `work` in a forked child for at most `seconds` and returns what it answered. Must be called while
-/// this process has one thread and no GL context: a child of a threaded process may only use what is safe in
-/// a signal handler. Throws EnvironmentError when no child can be made.
+/// Runs `work` in a forked child for at most `seconds` and returns what it answered. Must be called
+/// while this process has one thread and no GL context: a child of a threaded process may only use
+/// what is safe in a signal handler. Throws EnvironmentError when no child can be made.
 [[nodiscard]] Answer run_isolated(double seconds, const std::function<std::string()>& work);
 
 }  // namespace lodbench::base

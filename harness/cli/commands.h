@@ -1,6 +1,7 @@
 #pragma once
-// One function a command, one file a function. Each adds its subcommand; the callback sets `status` to the
-// exit status (0 when it does nothing) and throws InputError or EnvironmentError for what it cannot do.
+// One function a command, one file a function. Each adds its subcommand; the callback sets `status`
+// to the exit status (0 when it does nothing) and throws InputError or EnvironmentError for what it
+// cannot do.
 
 namespace CLI {
 class App;

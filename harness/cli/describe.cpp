@@ -26,10 +26,12 @@ void print(const run::MethodInfo& method) {
     fmt::print("{}: {}\n", method.id, method.title);
     if (!method.citation.empty()) fmt::print("paper      {}\n", method.citation);
     fmt::print("version    {}\nplugin     {}\n", method.version, method.plugin.string());
-    fmt::print("quality    {}\n", method.quality_knob.empty() ? "exact: no knob" : method.quality_knob);
-    fmt::print("bound      {}\n", method.claimed_bound.empty()
-                                      ? "none claimed"
-                                      : method.claimed_bound + " bounds the screen error in pixels");
+    fmt::print("quality    {}\n",
+               method.quality_knob.empty() ? "exact: no knob" : method.quality_knob);
+    fmt::print("bound      {}\n",
+               method.claimed_bound.empty()
+                   ? "none claimed"
+                   : method.claimed_bound + " bounds the screen error in pixels");
     for (const std::string& name : method.gl_extensions) fmt::print("needs      {}\n", name);
     if (method.params.empty()) return;
     fmt::print("parameters\n");
@@ -54,7 +56,8 @@ int describe(const Options& options) {
 
 void add_describe(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("describe", "Shows a method's paper, parameters and promises.");
+    CLI::App* command =
+        app.add_subcommand("describe", "Shows a method's paper, parameters and promises.");
     command->add_option("METHOD", options->method, "id of the method")->required();
     add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--json", options->json, "JSON for programs");

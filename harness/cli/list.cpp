@@ -26,7 +26,8 @@ int list_devices(bool json) {
     Json::Value array = Json::arrayValue;
     for (const platform::DeviceEntry& device : platform::list_devices()) {
         if (!json) {
-            fmt::print("{:>3}  {}{}\n", device.number, device.name, device.software ? "  (software)" : "");
+            fmt::print("{:>3}  {}{}\n", device.number, device.name,
+                       device.software ? "  (software)" : "");
             continue;
         }
         Json::Value entry;
@@ -65,7 +66,8 @@ int list_methods(const Options& options) {
 
 void add_list(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("list", "Shows the methods that were found, and the devices.");
+    CLI::App* command =
+        app.add_subcommand("list", "Shows the methods that were found, and the devices.");
     add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--devices", options->devices, "the EGL devices instead, for --device");
     command->add_flag("--json", options->json, "JSON for programs");

@@ -50,7 +50,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (const std::string words = unknown_command(app); !words.empty() && error.get_exit_code() != 0) {
+        if (const std::string words = unknown_command(app);
+            !words.empty() && error.get_exit_code() != 0) {
             return fail(kWrongInput, words.c_str());
         }
         return app.exit(error) == 0 ? kAllWell : kWrongInput;

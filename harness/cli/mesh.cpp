@@ -50,20 +50,22 @@ run::Settings settings_of(const MeshOptions& options, const scenario::Scenario& 
     for (const std::string& text : options.settings) {
         const run::Setting setting = run::parse_setting(text, "[METHOD.]PARAM=VALUE");
         if (!setting.method.empty() && setting.method != options.method) {
-            throw InputError(fmt::format("--set {}: the mesh is of '{}', not of '{}'", text, options.method,
-                                         setting.method));
+            throw InputError(fmt::format("--set {}: the mesh is of '{}', not of '{}'", text,
+                                         options.method, setting.method));
         }
         chosen.emplace_back(setting.name, setting.value);
     }
     for (const scenario::MethodRequest& request : scenario.methods) {
         if (request.id != options.method) continue;
         for (const auto& [name, values] : request.settings) {
-            const bool overridden = std::any_of(chosen.begin(), chosen.end(),
-                                                [&](const auto& setting) { return setting.first == name; });
+            const bool overridden =
+                std::any_of(chosen.begin(), chosen.end(),
+                            [&](const auto& setting) { return setting.first == name; });
             if (values.size() == 1) put(name, values.front());
             if (values.size() > 1 && !overridden) {
-                throw InputError(fmt::format("{}: {} is swept over {} values; choose one with --set {}={}",
-                                             request.where, name, values.size(), name, values.front()));
+                throw InputError(
+                    fmt::format("{}: {} is swept over {} values; choose one with --set {}={}",
+                                request.where, name, values.size(), name, values.front()));
             }
         }
         break;
@@ -82,12 +84,14 @@ std::string text_of(const ParamValue& value) {
     return std::visit(writer, value);
 }
 
-/// Flies to the frame in lockstep, as a method may keep state from frame to frame, and writes the file.
-/// Returns what is to be printed.
+/// Flies to the frame in lockstep, as a method may keep state from frame to frame, and writes the
+/// file. Returns what is to be printed.
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
                         const run::MethodInfo& method, const run::Settings& settings) {
-    const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(scenario.terrain);
-    const auto path = scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
+    const std::shared_ptr<const terrain::HeightField> terrain =
+        terrain::load_terrain(scenario.terrain);
+    const auto path =
+        scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
     run::VitalSigns signs;
     run::Stage stage({.terrain = terrain,
                       .plugin = method.plugin,
@@ -112,7 +116,8 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
     stage.resume_background();
     if (const std::uint64_t count = run::not_finite_count(surface); count > 0) {
         throw run::MethodFailure(fmt::format(
-            "{} of the {} vertices that '{}' draws in frame {} are NaN or infinite: nothing was written; "
+            "{} of the {} vertices that '{}' draws in frame {} are NaN or infinite: nothing was "
+            "written; "
             "`lodbench validate {}` finds the camera",
             count, surface.vertices.size(), method.id, options.frame, method.plugin.string()));
     }
@@ -133,10 +138,11 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
                                : run::weld(measure::clipped_triangles(surface, terrain->info()));
     report::write_whole(options.out, run::ply(mesh, context));
     stage.release();
-    return options.json ? fmt::format("{{\"vertices\": {}, \"triangles\": {}}}", mesh.vertices.size(),
-                                      mesh.triangles.size())
-                        : fmt::format("{}: {} triangles, {} vertices, frame {} of {}", options.out,
-                                      mesh.triangles.size(), mesh.vertices.size(), options.frame, method.id);
+    return options.json
+               ? fmt::format("{{\"vertices\": {}, \"triangles\": {}}}", mesh.vertices.size(),
+                             mesh.triangles.size())
+               : fmt::format("{}: {} triangles, {} vertices, frame {} of {}", options.out,
+                             mesh.triangles.size(), mesh.vertices.size(), options.frame, method.id);
 }
 
 int run_mesh(const MeshOptions& options) {
@@ -145,22 +151,24 @@ int run_mesh(const MeshOptions& options) {
     scenario::Scenario scenario = scenario::load_scenario(file);
     scenario::apply(options.overrides, scenario);
     if (options.frame >= scenario.frames) {
-        throw InputError(fmt::format("--frame {}: the flight of {} has frames 0 to {}", options.frame,
-                                     scenario.name, scenario.frames - 1));
+        throw InputError(fmt::format("--frame {}: the flight of {} has frames 0 to {}",
+                                     options.frame, scenario.name, scenario.frames - 1));
     }
     const run::Settings settings = settings_of(options, scenario);
     const run::MethodInfo method =
         run::find_method(find_plugins(options.plugin_dirs), options.method, "mesh");
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
-    const base::Answer answer =
-        base::run_isolated(scenario.cell_time_limit_s,
-                                  [&] { return export_mesh(options, scenario, method, settings); });
+    const base::Answer answer = base::run_isolated(scenario.cell_time_limit_s, [&] {
+        return export_mesh(options, scenario, method, settings);
+    });
     using base::Ending;
     switch (answer.ending) {
         case Ending::answered: fmt::print("{}\n", answer.text); return run::kAllWell;
         case Ending::refused: throw InputError(answer.text);
         case Ending::no_means: throw EnvironmentError(answer.text);
-        case Ending::threw: fmt::print(stderr, "lodbench: {}\n", answer.text); return run::kCellFailed;
+        case Ending::threw:
+            fmt::print(stderr, "lodbench: {}\n", answer.text);
+            return run::kCellFailed;
         case Ending::died:
         case Ending::timed_out: break;
     }
@@ -173,15 +181,20 @@ int run_mesh(const MeshOptions& options) {
 
 void add_mesh(CLI::App& app, int& status) {
     const auto options = std::make_shared<MeshOptions>();
-    CLI::App* command = app.add_subcommand(
-        "mesh", "Write the triangles that a method draws in one frame (binary PLY, world metres in double)");
-    command->add_option("METHOD", options->method, "id of the method, see `lodbench list`")->required();
-    command->add_option("--scenario", options->scenario, "scenario file; the demo's when not given");
+    CLI::App* command = app.add_subcommand("mesh",
+                                           "Write the triangles that a method draws in one frame "
+                                           "(binary PLY, world metres in double)");
+    command->add_option("METHOD", options->method, "id of the method, see `lodbench list`")
+        ->required();
+    command->add_option("--scenario", options->scenario,
+                        "scenario file; the demo's when not given");
     command->add_option("--frame", options->frame, "index on the flight path, 0 when not given")
         ->check(CLI::NonNegativeNumber);
     command->add_option("-o,--out", options->out, "file to write, whole or not at all")->required();
     add_repeated(*command, "--set", options->settings, "[METHOD.]PARAM=VALUE");
-    command->add_option("--frames", options->overrides.frames, "number of frames over which the path is spread")
+    command
+        ->add_option("--frames", options->overrides.frames,
+                     "number of frames over which the path is spread")
         ->check(CLI::PositiveNumber);
     add_size(*command, options->overrides.viewport);
     add_device(*command, options->device);

@@ -116,7 +116,7 @@ void copy_template(const fs::path& folder, const MethodName& name) {
     try {
         for (const char* file : kTemplateFiles) {
             report::write_whole(unfinished / rename_all(file, name),
-                       rename_all(report::read_text(source / file), name));
+                                rename_all(report::read_text(source / file), name));
         }
         fs::rename(unfinished, folder, error);
         if (error) {

@@ -22,7 +22,8 @@ Viewport parse_size(const std::string& text) {
             return size;
         }
     }
-    throw InputError(fmt::format("--size {}: expected WIDTHxHEIGHT, each 1..{}, as 640x480", text, kLargest));
+    throw InputError(
+        fmt::format("--size {}: expected WIDTHxHEIGHT, each 1..{}, as 640x480", text, kLargest));
 }
 
 }  // namespace
@@ -32,7 +33,8 @@ void add_plugin_dirs(CLI::App& command, std::vector<std::filesystem::path>& fold
 }
 
 void add_device(CLI::App& command, std::string& device) {
-    command.add_option("--device", device, "EGL device: number or part of its name, see `lodbench list --devices`");
+    command.add_option("--device", device,
+                       "EGL device: number or part of its name, see `lodbench list --devices`");
 }
 
 void add_size(CLI::App& command, std::optional<Viewport>& size) {
@@ -43,7 +45,8 @@ void add_size(CLI::App& command, std::optional<Viewport>& size) {
         ->type_name("WIDTHxHEIGHT");
 }
 
-std::vector<run::PluginListing> find_plugins(const std::vector<std::filesystem::path>& plugin_dirs) {
+std::vector<run::PluginListing> find_plugins(
+    const std::vector<std::filesystem::path>& plugin_dirs) {
     return run::list_plugins(run::plugin_folders(plugin_dirs));
 }
 

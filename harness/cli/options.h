@@ -12,7 +12,8 @@
 
 namespace lodbench::cli {
 
-/// An option that may be given again. Takes one value each time: what follows stays a positional argument.
+/// An option that may be given again. Takes one value each time: what follows stays a positional
+/// argument.
 template <typename Value>
 CLI::Option* add_repeated(CLI::App& command, const std::string& names, std::vector<Value>& values,
                           const std::string& help) {

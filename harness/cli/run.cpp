@@ -32,18 +32,21 @@ struct Options {
     bool json = false;
 };
 
-/// Progress on standard error: one line redrawn on a terminal, a line for each finished cell elsewhere.
+/// Progress on standard error: one line redrawn on a terminal, a line for each finished cell
+/// elsewhere.
 class Progress final : public run::CampaignObserver {
 public:
-    void warned(const std::string& warning) override { fmt::print(stderr, "warning: {}\n", warning); }
+    void warned(const std::string& warning) override {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
 
     void cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        double fraction) override {
         const auto now = Clock::now();
         if (!terminal_ || now - drawn_ < std::chrono::milliseconds(200)) return;
         drawn_ = now;
-        fmt::print(stderr, "\r\033[K[{}/{}] {} {:.0f} %{}", index + 1, count, cell.spec.id, 100 * fraction,
-                   time_left(count - index, fraction));
+        fmt::print(stderr, "\r\033[K[{}/{}] {} {:.0f} %{}", index + 1, count, cell.spec.id,
+                   100 * fraction, time_left(count - index, fraction));
         std::fflush(stderr);
     }
 
@@ -57,8 +60,8 @@ public:
         } else if (record["reason"].isString()) {
             words += ": " + record["reason"].asString();
         }
-        fmt::print(stderr, "{}[{}/{}] {} {}{}\n", terminal_ ? "\r\033[K" : "", index + 1, count, cell.spec.id,
-                   words, time_left(count - index - 1, 0));
+        fmt::print(stderr, "{}[{}/{}] {} {}{}\n", terminal_ ? "\r\033[K" : "", index + 1, count,
+                   cell.spec.id, words, time_left(count - index - 1, 0));
     }
 
 private:
@@ -93,7 +96,8 @@ void print_outcome(const run::CampaignOutcome& outcome, bool json) {
         return;
     }
     fmt::print("\n{}\n", report::text_table(report::table_rows(outcome.cells, outcome.seed)));
-    fmt::print("results   {}\npictures  {}\n", outcome.out.string(), (outcome.out / "shots").string());
+    fmt::print("results   {}\npictures  {}\n", outcome.out.string(),
+               (outcome.out / "shots").string());
 }
 
 /// As it was typed, quoting apart.
@@ -114,9 +118,12 @@ int fly(Options& options) {
     if (request.resume && request.out.empty()) {
         throw InputError("--resume: which run? Name its folder with --out DIR");
     }
-    if (request.resume && !request.names_cells() && !std::filesystem::exists(request.out / "run.json")) {
-        throw InputError(fmt::format("--resume --out {}: there is no run.json in it, so nothing to resume; "
-                                     "start the run without --resume", request.out.string()));
+    if (request.resume && !request.names_cells() &&
+        !std::filesystem::exists(request.out / "run.json")) {
+        throw InputError(
+            fmt::format("--resume --out {}: there is no run.json in it, so nothing to resume; "
+                        "start the run without --resume",
+                        request.out.string()));
     }
     if (request.out.empty()) request.out = default_out();
     Progress progress;
@@ -132,21 +139,27 @@ void add_run(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     run::RunRequest& request = options->request;
     CLI::App* command = app.add_subcommand(
-        "run", "Flies scenarios with methods, each cell in a process of its own, and writes the results.");
-    command->add_option("SCENARIO", request.scenarios, "scenario files; none: the demo over Puget Sound");
-    add_repeated(*command, "--method,-m", request.methods, "method to fly; none: as the scenario says");
+        "run",
+        "Flies scenarios with methods, each cell in a process of its own, and writes the results.");
+    command->add_option("SCENARIO", request.scenarios,
+                        "scenario files; none: the demo over Puget Sound");
+    add_repeated(*command, "--method,-m", request.methods,
+                 "method to fly; none: as the scenario says");
     add_repeated(*command, "--set", request.settings,
                  "METHOD.PARAMETER=VALUE[,VALUE...]; several values are swept");
-    command->add_option("--out,-o", request.out, "results folder; default lodbench-results/<UTC date-time>");
+    command->add_option("--out,-o", request.out,
+                        "results folder; default lodbench-results/<UTC date-time>");
     add_plugin_dirs(*command, request.plugin_dirs);
     auto* frames = command->add_option("--frames", options->frames, "frames of the flight")
                        ->check(CLI::Range(1, 1000000));
     add_size(*command, request.overrides.viewport);
-    auto* seed = command->add_option("--seed", options->seed, "seed of the order and of random choices");
+    auto* seed =
+        command->add_option("--seed", options->seed, "seed of the order and of random choices");
     auto* repeat = command->add_option("--repeat", options->repetitions, "repetitions of each cell")
                        ->check(CLI::Range(1, 10000));
     add_device(*command, request.device);
-    command->add_flag("--resume", request.resume, "finish what is missing in --out, as the run began");
+    command->add_flag("--resume", request.resume,
+                      "finish what is missing in --out, as the run began");
     command->add_flag("--json", options->json, "print one JSON object instead of the table");
     command->callback([=, &status] {
         run::RunRequest& wanted = options->request;

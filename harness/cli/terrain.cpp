@@ -53,7 +53,8 @@ void add_shape(CLI::App& command, Options& options) {
     command.add_option("--columns", source.columns, "Columns of a synthetic terrain")
         ->capture_default_str();
     command.add_option("--seed", source.seed, "Seed of a synthetic terrain")->capture_default_str();
-    add_repeated(command, "--set", options.settings, "A parameter of the synthetic form, as key=value");
+    add_repeated(command, "--set", options.settings,
+                 "A parameter of the synthetic form, as key=value");
 }
 
 /// The forms and their parameters, for --help.
@@ -89,9 +90,10 @@ LoadedTerrain load(Options& options, const CLI::App& command) {
         for (const char* option : {"--rows", "--columns", "--seed", "--set"}) {
             const CLI::Option* given = command.get_option_no_throw(option);
             if (given != nullptr && given->count() > 0) {
-                throw InputError(fmt::format("{}: belongs to synthetic terrains; leave it out or "
-                                             "name one with --synthetic",
-                                             option));
+                throw InputError(
+                    fmt::format("{}: belongs to synthetic terrains; leave it out or "
+                                "name one with --synthetic",
+                                option));
             }
         }
     }
@@ -161,7 +163,8 @@ void add_info(CLI::App& parent) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *parent.add_subcommand(
         "info", "Size, height range, spacing, extent, voids and checksum of a terrain");
-    auto* file = command.add_option("FILE", options->source.file, "Elevation model, image or raw file");
+    auto* file =
+        command.add_option("FILE", options->source.file, "Elevation model, image or raw file");
     auto* form = command.add_option("--synthetic", options->source.synthetic, "A synthetic form");
     file->excludes(form);
     add_shape(command, *options);
@@ -175,8 +178,10 @@ void add_import(CLI::App& parent) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *parent.add_subcommand(
         "import", "Reads a terrain, fills its voids and writes it as float32 heights in metres");
-    command.add_option("FILE", options->source.file, "Elevation model, image or raw file")->required();
-    command.add_option("-o,--output", options->output, "OUT.raw; OUT.raw.toml is written beside it")
+    command.add_option("FILE", options->source.file, "Elevation model, image or raw file")
+        ->required();
+    command
+        .add_option("-o,--output", options->output, "OUT.raw; OUT.raw.toml is written beside it")
         ->required();
     add_overrides(command, *options);
     add_file_overrides(command, *options);
@@ -188,7 +193,8 @@ void add_synth(CLI::App& parent) {
     CLI::App& command =
         *parent.add_subcommand("synth", "Makes a synthetic terrain and writes its heights");
     command.add_option("NAME", options->source.synthetic, "The form")->required();
-    command.add_option("-o,--output", options->output, "OUT.raw; OUT.raw.toml is written beside it")
+    command
+        .add_option("-o,--output", options->output, "OUT.raw; OUT.raw.toml is written beside it")
         ->required();
     add_shape(command, *options);
     add_overrides(command, *options);
@@ -199,8 +205,7 @@ void add_synth(CLI::App& parent) {
 }  // namespace
 
 void add_terrain(CLI::App& app, int& /*status*/) {
-    CLI::App& command =
-        *app.add_subcommand("terrain", "Looks at, imports and makes terrains");
+    CLI::App& command = *app.add_subcommand("terrain", "Looks at, imports and makes terrains");
     command.require_subcommand(1);
     add_info(command);
     add_import(command);

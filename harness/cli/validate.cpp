@@ -78,8 +78,8 @@ std::vector<run::Setting> parse_settings(const ValidateOptions& options,
 /// What to type to see a failure again.
 std::string repeat_command(const ValidateOptions& options, const std::string& method,
                            const run::Settings& settings, const std::string& test) {
-    std::string text = fmt::format("lodbench validate {} --method {} --test {} --seed {}", options.plugin,
-                                   method, test, options.seed);
+    std::string text = fmt::format("lodbench validate {} --method {} --test {} --seed {}",
+                                   options.plugin, method, test, options.seed);
     for (const auto& [name, value] : settings) text += fmt::format(" --set {}={}", name, value);
     return text;
 }
@@ -121,7 +121,8 @@ int run_validate(const ValidateOptions& options) {
         conformance::CheckReport report;
         report.check = "loads";
         report.reason = listing.refusal;
-        print_line(options, options.method.empty() ? plugin.stem().string() : options.method, report);
+        print_line(options, options.method.empty() ? plugin.stem().string() : options.method,
+                   report);
         return run::kPromiseBroken;
     }
     int passed = 0, failed = 0, skipped = 0;
@@ -142,12 +143,14 @@ int run_validate(const ValidateOptions& options) {
             skipped += report.verdict == conformance::Verdict::skipped;
             print_line(options, method.id, report);
             if (report.verdict == conformance::Verdict::failed && !options.json) {
-                fmt::print("         again: {}\n", repeat_command(options, method.id, settings, check.name));
+                fmt::print("         again: {}\n",
+                           repeat_command(options, method.id, settings, check.name));
             }
         }
     }
     if (!options.json) {
-        fmt::print("{} passed, {} failed, {} skipped, seed {}\n", passed, failed, skipped, options.seed);
+        fmt::print("{} passed, {} failed, {} skipped, seed {}\n", passed, failed, skipped,
+                   options.seed);
     }
     if (failed > 0) return run::kPromiseBroken;
     return passed > 0 ? run::kAllWell : run::kNothingMeasured;
@@ -157,15 +160,17 @@ int run_validate(const ValidateOptions& options) {
 
 void add_validate(CLI::App& app, int& status) {
     const auto options = std::make_shared<ValidateOptions>();
-    CLI::App* command =
-        app.add_subcommand("validate", "Put a plugin's methods to the promises that every method makes");
+    CLI::App* command = app.add_subcommand(
+        "validate", "Put a plugin's methods to the promises that every method makes");
     command->add_option("PLUGIN", options->plugin, "the plugin's file");
     command->add_option("--method", options->method, "only this method of the plugin");
     add_repeated(*command, "--test", options->tests, "only this test");
     add_repeated(*command, "--set", options->settings, "[METHOD.]PARAM=VALUE for all tests");
-    command->add_option("--seed", options->seed, "random cameras and frame numbers come from it; 1");
+    command->add_option("--seed", options->seed,
+                        "random cameras and frame numbers come from it; 1");
     add_device(*command, options->device);
-    command->add_option("--time-factor", options->time_factor, "stretches each test's time limit; 1")
+    command
+        ->add_option("--time-factor", options->time_factor, "stretches each test's time limit; 1")
         ->check(CLI::PositiveNumber);
     command->add_flag("--json", options->json, "print one JSON object a line");
     command->add_flag("--list", options->list, "list the tests and what each promises");

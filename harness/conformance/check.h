@@ -21,7 +21,8 @@ struct Subject {
     std::uint64_t seed = 1;
 };
 
-/// The method does not keep its promise: what was seen, with frame or camera, and what was expected.
+/// The method does not keep its promise: what was seen, with frame or camera, and what was
+/// expected.
 struct PromiseBroken : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -35,7 +36,8 @@ struct Check {
     const char* name;     ///< [a-z0-9-]+
     const char* promise;  ///< one line: what holds when it passes
     double time_limit_s;
-    /// Returns when the promise is kept, throws PromiseBroken, run::MethodFailure or NotApplicable otherwise.
+    /// Returns when the promise is kept, throws PromiseBroken, run::MethodFailure or NotApplicable
+    /// otherwise.
     void (*run)(const Subject&);
 };
 

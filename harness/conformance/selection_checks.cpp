@@ -1,4 +1,5 @@
-// What is measured is what is timed: selections are repeatable, frozen, and drawn alike through every view.
+// What is measured is what is timed: selections are repeatable, frozen, and drawn alike through
+// every view.
 
 #include <fmt/format.h>
 
@@ -14,10 +15,12 @@ namespace {
 
 constexpr int kCameras = 4;
 
-/// A view that has nothing to do with the selected camera: from the side, turned about, another lens.
+/// A view that has nothing to do with the selected camera: from the side, turned about, another
+/// lens.
 View other_view(const Camera& selected, const TerrainInfo& terrain) {
     Camera camera = selected;
-    const glm::dvec3 aside(0.3 * low_flight(terrain), -0.2 * low_flight(terrain), low_flight(terrain));
+    const glm::dvec3 aside(0.3 * low_flight(terrain), -0.2 * low_flight(terrain),
+                           low_flight(terrain));
     camera.position += aside;
     camera.orientation = Camera::look(-selected.forward() + glm::dvec3(0.2, 0.1, -0.5));
     camera.vertical_fov = 1.4;
@@ -37,9 +40,10 @@ std::string name_of_camera(int i, const Subject& subject) {
     return fmt::format("camera {} of seed {}", i, subject.seed);
 }
 
-/// Share of the pixels at which two depth images show another surface. Both draw the same vertices to the
-/// bit, but as strips and as single triangles, so that interpolated depth differs by rounding: a few
-/// steps of 2^-24 relative to the nearest vertex of the triangle, which reversed depth puts at 1 or below.
+/// Share of the pixels at which two depth images show another surface. Both draw the same vertices
+/// to the bit, but as strips and as single triangles, so that interpolated depth differs by
+/// rounding: a few steps of 2^-24 relative to the nearest vertex of the triangle, which reversed
+/// depth puts at 1 or below.
 double share_that_differs(const std::vector<float>& a, const std::vector<float>& b) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -61,8 +65,10 @@ void draw_is_idempotent(const Subject& subject) {
         const auto before = session.picture();
         const auto captured = session.capture();
         const auto after = session.picture();
-        require_same_depth(before, after, kViewport, name_of_camera(i, subject) + ", picture after a capture");
-        require_same_surface(captured, session.capture(), name_of_camera(i, subject) + ", second capture");
+        require_same_depth(before, after, kViewport,
+                           name_of_camera(i, subject) + ", picture after a capture");
+        require_same_surface(captured, session.capture(),
+                             name_of_camera(i, subject) + ", second capture");
     }
 }
 
@@ -94,9 +100,11 @@ void selection_is_frozen(const Subject& subject) {
                                             captured.triangle_count(), triangles, view));
         };
         expect(session.triangles_through(picture_view(camera)), "the picture's view");
-        expect(session.triangles_through(other_view(camera, session.terrain())), "a view turned about");
+        expect(session.triangles_through(other_view(camera, session.terrain())),
+               "a view turned about");
         expect(session.triangles_through(overview(camera, session.terrain())), "a view from above");
-        require_same_depth(picture, session.picture(), kViewport, where + ", picture after other views");
+        require_same_depth(picture, session.picture(), kViewport,
+                           where + ", picture after other views");
         require_same_surface(captured, session.capture(), where + ", capture after other views");
     }
 }
@@ -112,12 +120,14 @@ void picture_shows_the_capture(const Subject& subject) {
             const auto drawn = session.depth_through(view);
             renderer.draw(session.stage().device());
             const double share = share_that_differs(drawn, session.stage().read_depth());
-            // One pixel in a thousand: triangles that clipping cuts get new corners, rounded each its own way.
+            // One pixel in a thousand: triangles that clipping cuts get new corners, rounded each
+            // its own way.
             if (share <= 1e-3) return;
-            throw PromiseBroken(fmt::format(
-                "{}: through {}, {:.2f} % of the pixels show another surface than the captured triangles "
-                "(draw calls past gl::Device, or positions that depend on the view?)",
-                name_of_camera(i, subject), name, 100 * share));
+            throw PromiseBroken(
+                fmt::format("{}: through {}, {:.2f} % of the pixels show another surface than the "
+                            "captured triangles "
+                            "(draw calls past gl::Device, or positions that depend on the view?)",
+                            name_of_camera(i, subject), name, 100 * share));
         };
         compare(picture_view(camera), "the picture's view");
         compare(other_view(camera, session.terrain()), "a view turned about");
@@ -150,9 +160,10 @@ void timing_equals_lockstep(const Subject& subject) {
         if (frame % 3 == 0) static_cast<void>(lockstep.capture());
         replayed = lockstep.picture();
     }
-    require_same_depth(timed, replayed, kViewport,
-                       fmt::format("frame {} of a flight of seed {}, timing replay against lockstep",
-                                   frames - 1, subject.seed));
+    require_same_depth(
+        timed, replayed, kViewport,
+        fmt::format("frame {} of a flight of seed {}, timing replay against lockstep", frames - 1,
+                    subject.seed));
 }
 
 void lockstep_is_repeatable(const Subject& subject) {
@@ -169,8 +180,9 @@ void lockstep_is_repeatable(const Subject& subject) {
             auto surface = session.capture();
             const std::uint64_t count = session.stage().count_primitives();
             if (count != surface.triangle_count()) {
-                throw PromiseBroken(fmt::format("{}: the GPU generated {} triangles, the capture holds {}",
-                                                where, count, surface.triangle_count()));
+                throw PromiseBroken(
+                    fmt::format("{}: the GPU generated {} triangles, the capture holds {}", where,
+                                count, surface.triangle_count()));
             }
             if (replay == 0) {
                 first.push_back(std::move(surface));

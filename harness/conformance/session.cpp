@@ -10,7 +10,8 @@
 
 namespace lodbench::conformance {
 
-TerrainPointer make_terrain(const std::string& form, int rows, int columns, const glm::dvec2& origin) {
+TerrainPointer make_terrain(const std::string& form, int rows, int columns,
+                            const glm::dvec2& origin) {
     terrain::TerrainSource source;
     source.synthetic = form;
     source.rows = rows;
@@ -83,8 +84,8 @@ std::vector<NamedCamera> hard_cameras(const terrain::HeightField& terrain) {
         Camera camera;
         camera.viewport = kViewport;
         camera.position = position;
-        camera.orientation = glm::normalize(Camera::look(direction) *
-                                            glm::angleAxis(roll_degrees * degrees, glm::dvec3(0, 0, 1)));
+        camera.orientation = glm::normalize(
+            Camera::look(direction) * glm::angleAxis(roll_degrees * degrees, glm::dvec3(0, 0, 1)));
         cameras.push_back({std::move(name), camera});
     };
     const glm::dvec3 over(middle, above);
@@ -167,18 +168,19 @@ void require_same_depth(const std::vector<float>& before, const std::vector<floa
                         const Viewport& viewport, const std::string& what) {
     std::size_t count = 0, first = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
-        if (std::bit_cast<std::uint32_t>(before[i]) == std::bit_cast<std::uint32_t>(after[i])) continue;
+        if (std::bit_cast<std::uint32_t>(before[i]) == std::bit_cast<std::uint32_t>(after[i]))
+            continue;
         if (count++ == 0) first = i;
     }
     if (count == 0) return;
     const std::size_t width = std::size_t(viewport.width);
-    throw PromiseBroken(fmt::format("{}: depth differs at {} of {} pixels, first at x {}, y {}: {} and {}",
-                                    what, count, before.size(), first % width, first / width,
-                                    before[first], after[first]));
+    throw PromiseBroken(fmt::format(
+        "{}: depth differs at {} of {} pixels, first at x {}, y {}: {} and {}", what, count,
+        before.size(), first % width, first / width, before[first], after[first]));
 }
 
-void require_same_surface(const measure::CapturedSurface& before, const measure::CapturedSurface& after,
-                          const std::string& what) {
+void require_same_surface(const measure::CapturedSurface& before,
+                          const measure::CapturedSurface& after, const std::string& what) {
     if (before.triangle_count() != after.triangle_count()) {
         throw PromiseBroken(fmt::format("{}: {} triangles, then {}", what, before.triangle_count(),
                                         after.triangle_count()));
@@ -189,8 +191,8 @@ void require_same_surface(const measure::CapturedSurface& before, const measure:
         const glm::vec3& b = after.vertices[i];
         if (std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b)) continue;
         throw PromiseBroken(fmt::format(
-            "{}: triangle {} of {} moved from ({}, {}, {}) to ({}, {}, {}) relative to the eye", what,
-            i / 3, before.triangle_count(), a.x, a.y, a.z, b.x, b.y, b.z));
+            "{}: triangle {} of {} moved from ({}, {}, {}) to ({}, {}, {}) relative to the eye",
+            what, i / 3, before.triangle_count(), a.x, a.y, a.z, b.x, b.y, b.z));
     }
 }
 
@@ -203,8 +205,9 @@ void require_finite(const measure::CapturedSurface& surface, const std::string& 
     }
     if (count == 0) return;
     const glm::vec3& v = surface.vertices[first];
-    throw PromiseBroken(fmt::format("{}: {} of {} vertices are not finite, first in triangle {}: ({}, {}, {})",
-                                    what, count, surface.vertices.size(), first / 3, v.x, v.y, v.z));
+    throw PromiseBroken(
+        fmt::format("{}: {} of {} vertices are not finite, first in triangle {}: ({}, {}, {})",
+                    what, count, surface.vertices.size(), first / 3, v.x, v.y, v.z));
 }
 
 }  // namespace lodbench::conformance

@@ -14,7 +14,8 @@ namespace lodbench::conformance {
 
 using TerrainPointer = std::shared_ptr<const terrain::HeightField>;
 
-/// A synthetic terrain by name, 10 m between its samples, seed 1, its south-west corner at `origin`.
+/// A synthetic terrain by name, 10 m between its samples, seed 1, its south-west corner at
+/// `origin`.
 [[nodiscard]] TerrainPointer make_terrain(const std::string& form, int rows, int columns,
                                           const glm::dvec2& origin = {0, 0});
 /// Where most checks fly: ridged, 129 x 129.
@@ -37,22 +38,24 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// Metres above the highest sample below which a camera over this terrain sees detail: a quarter of the
-/// extent's longer side.
+/// Metres above the highest sample below which a camera over this terrain sees detail: a quarter of
+/// the extent's longer side.
 [[nodiscard]] double low_flight(const TerrainInfo& terrain);
 
 /// A camera over (or near) the terrain, looking somewhat downward.
 [[nodiscard]] Camera random_camera(Random& random, const TerrainInfo& terrain);
 
 /// `frames` cameras: a smooth flight with one jump, as methods may keep state from frame to frame.
-[[nodiscard]] std::vector<Camera> random_flight(Random& random, const TerrainInfo& terrain, int frames);
+[[nodiscard]] std::vector<Camera> random_flight(Random& random, const TerrainInfo& terrain,
+                                                int frames);
 
 /// A camera with a name for messages.
 struct NamedCamera {
     std::string name;
     Camera camera;
 };
-/// Level, straight down, upward, rolled, on the ground, under it, far outside, at a corner, at a sample.
+/// Level, straight down, upward, rolled, on the ground, under it, far outside, at a corner, at a
+/// sample.
 [[nodiscard]] std::vector<NamedCamera> hard_cameras(const terrain::HeightField& terrain);
 
 /// A stage that was prepared, uploaded and sized, and the few steps that the checks are made of.
@@ -86,12 +89,13 @@ private:
 /// The frame's time at 60 frames per second.
 [[nodiscard]] Clock clock_of(int frame);
 
-/// Pixels whose bits differ; throws PromiseBroken with `what` and the first such pixel when there is one.
+/// Pixels whose bits differ; throws PromiseBroken with `what` and the first such pixel when there
+/// is one.
 void require_same_depth(const std::vector<float>& before, const std::vector<float>& after,
                         const Viewport& viewport, const std::string& what);
 /// The same for two captures, triangle for triangle.
-void require_same_surface(const measure::CapturedSurface& before, const measure::CapturedSurface& after,
-                          const std::string& what);
+void require_same_surface(const measure::CapturedSurface& before,
+                          const measure::CapturedSurface& after, const std::string& what);
 /// Throws PromiseBroken, naming `what`, where a captured vertex is NaN or infinite.
 void require_finite(const measure::CapturedSurface& surface, const std::string& what);
 

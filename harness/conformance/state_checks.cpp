@@ -26,7 +26,8 @@ public:
         const gl::ObjectCounts& now = stage_.device().objects();
         std::string left;
         const auto compare = [&](const char* kind, int before, int after) {
-            if (before != after) left += fmt::format("{}{} {}", left.empty() ? "" : ", ", after - before, kind);
+            if (before != after)
+                left += fmt::format("{}{} {}", left.empty() ? "" : ", ", after - before, kind);
         };
         compare("buffers", expected.buffers, now.buffers);
         compare("textures", expected.textures, now.textures);
@@ -35,7 +36,8 @@ public:
         compare("framebuffers", expected.framebuffers, now.framebuffers);
         compare("queries", expected.queries, now.queries);
         compare("fences", expected.fences, now.fences);
-        if (!left.empty()) throw PromiseBroken(fmt::format("{}: not given back to gl/: {}", when, left));
+        if (!left.empty())
+            throw PromiseBroken(fmt::format("{}: not given back to gl/: {}", when, left));
         gl::AliveObjects alive = alive_;
         alive.textures += 2 * host_pictures;
         alive.framebuffers += host_pictures;
@@ -135,8 +137,8 @@ void pipeline_state_is_restored(const Subject& subject) {
 void no_gl_errors(const Subject& subject) {
     run::VitalSigns signs;
     run::Stage stage(setup_of(subject, ridged_terrain()), signs);
-    // The stage hears the driver's debug messages; the error flag is asked besides, as a plugin can turn
-    // the messages off.
+    // The stage hears the driver's debug messages; the error flag is asked besides, as a plugin can
+    // turn the messages off.
     fly_every_call(stage, subject, [](const char* call) {
         const GLenum error = glGetError();
         if (error != GL_NO_ERROR) {
@@ -155,9 +157,7 @@ void objects_are_given_back(const Subject& subject) {
 
 void release_without_frames(const Subject& subject) {
     run::VitalSigns signs;
-    {
-        const run::Stage created_only(setup_of(subject, ridged_terrain()), signs);
-    }
+    { const run::Stage created_only(setup_of(subject, ridged_terrain()), signs); }
     run::Stage stage(setup_of(subject, ridged_terrain()), signs);
     const Inventory inventory(stage);
     stage.prepare();

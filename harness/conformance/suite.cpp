@@ -28,15 +28,15 @@ constexpr std::array kChecks = {
     Check{"picture-shows-the-capture", "the picture is that of the captured triangles", kUsualLimit,
           picture_shows_the_capture},
     Check{"timing-equals-lockstep",
-          "depth after a random number of timing frames equals a fresh lockstep replay's", kUsualLimit,
-          timing_equals_lockstep},
+          "depth after a random number of timing frames equals a fresh lockstep replay's",
+          kUsualLimit, timing_equals_lockstep},
     Check{"lockstep-is-repeatable", "two lockstep replays draw the same triangles", kUsualLimit,
           lockstep_is_repeatable},
-    Check{"pipeline-state-is-restored", "every call leaves the GL state as it was found", kUsualLimit,
-          pipeline_state_is_restored},
+    Check{"pipeline-state-is-restored", "every call leaves the GL state as it was found",
+          kUsualLimit, pipeline_state_is_restored},
     Check{"no-gl-errors", "no call raises a GL error", kUsualLimit, no_gl_errors},
-    Check{"objects-are-given-back", "release gives all GL objects back, bare ones included", kUsualLimit,
-          objects_are_given_back},
+    Check{"objects-are-given-back", "release gives all GL objects back, bare ones included",
+          kUsualLimit, objects_are_given_back},
     Check{"release-without-frames", "prepare, upload, release without a frame leaves nothing",
           kUsualLimit, release_without_frames},
     Check{"resize-and-back", "other viewports work, and the first gives the first picture again",
@@ -45,12 +45,13 @@ constexpr std::array kChecks = {
           kUsualLimit, vertices_are_finite},
     Check{"any-terrain-works", "2x2, odd sizes, plane, step, ridged: drawn and finite", kLongLimit,
           any_terrain_works},
-    Check{"origin-does-not-matter", "10,000 km from the origin the surface is the same", kUsualLimit,
-          origin_does_not_matter},
+    Check{"origin-does-not-matter", "10,000 km from the origin the surface is the same",
+          kUsualLimit, origin_does_not_matter},
     Check{"parameters-at-their-limits", "every parameter works at its minimum, default and maximum",
           kLongLimit, parameters_at_their_limits},
-    Check{"terrain-in-view-is-covered", "a method that claims a bound leaves no sample in view uncovered",
-          kUsualLimit, terrain_in_view_is_covered},
+    Check{"terrain-in-view-is-covered",
+          "a method that claims a bound leaves no sample in view uncovered", kUsualLimit,
+          terrain_in_view_is_covered},
 };
 
 // The first letter of a child's answer.
@@ -101,7 +102,8 @@ CheckReport run_check(const Check& check, const Subject& subject, double time_fa
         base::run_isolated(check.time_limit_s * time_factor, [&] { return judge(check, subject); });
     CheckReport report;
     report.check = check.name;
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report.reason = answer.text;
     switch (answer.ending) {
         case base::Ending::answered:

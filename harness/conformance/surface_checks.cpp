@@ -12,12 +12,13 @@ namespace lodbench::conformance {
 
 namespace {
 
-/// Captured positions are floats relative to the eye after a few roundings (differences of samples, offset,
-/// height), each at most 2^-24 of the farthest coordinate.
+/// Captured positions are floats relative to the eye after a few roundings (differences of samples,
+/// offset, height), each at most 2^-24 of the farthest coordinate.
 double rounding_of(const measure::CapturedSurface& surface) {
     double reach = 1;
     for (const glm::vec3& v : surface.vertices) {
-        reach = std::max({reach, std::abs(double(v.x)), std::abs(double(v.y)), std::abs(double(v.z))});
+        reach =
+            std::max({reach, std::abs(double(v.x)), std::abs(double(v.y)), std::abs(double(v.z))});
     }
     return 8 * 0x1p-24 * reach;
 }
@@ -35,8 +36,10 @@ public:
         if (twice == 0) return;
         const std::array<glm::dvec2, 3> corner =
             twice > 0 ? std::array{a, b, c} : std::array{a, c, b};
-        const glm::dvec2 low = (glm::min(glm::min(a, b), c) - slack_ - terrain_.origin) / terrain_.spacing;
-        const glm::dvec2 high = (glm::max(glm::max(a, b), c) + slack_ - terrain_.origin) / terrain_.spacing;
+        const glm::dvec2 low =
+            (glm::min(glm::min(a, b), c) - slack_ - terrain_.origin) / terrain_.spacing;
+        const glm::dvec2 high =
+            (glm::max(glm::max(a, b), c) + slack_ - terrain_.origin) / terrain_.spacing;
         const auto clamped = [](double value, int count) {
             return int(std::clamp(value, 0.0, double(count - 1)));
         };
@@ -54,7 +57,8 @@ public:
 
 private:
     static double cross(const glm::dvec2& u, const glm::dvec2& v) { return u.x * v.y - u.y * v.x; }
-    [[nodiscard]] bool contains(const std::array<glm::dvec2, 3>& corner, const glm::dvec2& p) const {
+    [[nodiscard]] bool contains(const std::array<glm::dvec2, 3>& corner,
+                                const glm::dvec2& p) const {
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec2 edge = corner[(i + 1) % 3] - corner[i];
             if (cross(edge, p - corner[i]) < -slack_ * glm::length(edge)) return false;
@@ -76,13 +80,15 @@ void require_covered(Session& session, const Camera& camera, const std::string& 
     Coverage coverage(info, rounding_of(surface));
     const std::vector<glm::dvec3> triangles = measure::clipped_triangles(surface, info);
     for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
-        coverage.add(glm::dvec2(triangles[i]), glm::dvec2(triangles[i + 1]), glm::dvec2(triangles[i + 2]));
+        coverage.add(glm::dvec2(triangles[i]), glm::dvec2(triangles[i + 1]),
+                     glm::dvec2(triangles[i + 2]));
     }
     const std::span<const float> heights = session.stage().terrain().samples();
     int in_view = 0, uncovered = 0, first_row = 0, first_column = 0;
     for (int row = 0; row < info.rows; ++row) {
         for (int column = 0; column < info.columns; ++column) {
-            const float height = heights[std::size_t(row) * std::size_t(info.columns) + std::size_t(column)];
+            const float height =
+                heights[std::size_t(row) * std::size_t(info.columns) + std::size_t(column)];
             const auto pixel = camera.project({info.position(row, column), height});
             if (!pixel || pixel->x < 1 || pixel->y < 1 || pixel->x > camera.viewport.width - 1 ||
                 pixel->y > camera.viewport.height - 1) {
@@ -98,8 +104,8 @@ void require_covered(Session& session, const Camera& camera, const std::string& 
     }
     if (uncovered == 0) return;
     throw PromiseBroken(fmt::format(
-        "{}: {} of {} samples in view are covered by no triangle, first at row {}, column {}", where,
-        uncovered, in_view, first_row, first_column));
+        "{}: {} of {} samples in view are covered by no triangle, first at row {}, column {}",
+        where, uncovered, in_view, first_row, first_column));
 }
 
 Camera straight_down(const TerrainInfo& terrain) {
@@ -117,7 +123,8 @@ std::vector<std::string> trial_values(const run::ParamInfo& param) {
         case ParamType::boolean: return {"false", "true"};
         case ParamType::choice: return param.choices;
         case ParamType::integer:
-            return {fmt::format("{:.0f}", param.minimum), fmt::format("{:.0f}", param.default_number),
+            return {fmt::format("{:.0f}", param.minimum),
+                    fmt::format("{:.0f}", param.default_number),
                     fmt::format("{:.0f}", param.maximum)};
         case ParamType::real:
             return {fmt::format("{}", param.minimum), fmt::format("{}", param.default_number),
@@ -146,11 +153,11 @@ void any_terrain_works(const Subject& subject) {
         const char* name;
         int rows, columns;
     };
-    constexpr Form kForms[] = {{"plane", 2, 2},    {"ridged", 2, 2},  {"ridged", 3, 5},
-                               {"ridged", 5, 3},   {"ridged", 2, 65}, {"ridged", 65, 2},
-                               {"plane", 65, 65},  {"step", 65, 65},  {"ramp", 33, 17},
-                               {"bump", 64, 64},   {"sphere-cap", 50, 70},
-                               {"ridged", 100, 37}, {"ridged", 129, 129}};
+    constexpr Form kForms[] = {{"plane", 2, 2},     {"ridged", 2, 2},       {"ridged", 3, 5},
+                               {"ridged", 5, 3},    {"ridged", 2, 65},      {"ridged", 65, 2},
+                               {"plane", 65, 65},   {"step", 65, 65},       {"ramp", 33, 17},
+                               {"bump", 64, 64},    {"sphere-cap", 50, 70}, {"ridged", 100, 37},
+                               {"ridged", 129, 129}};
     for (const Form& form : kForms) {
         Session session(subject, make_terrain(form.name, form.rows, form.columns));
         const std::string where = fmt::format("{} {}x{}", form.name, form.rows, form.columns);
@@ -188,24 +195,29 @@ void origin_does_not_matter(const Subject& subject) {
         const auto found = there.capture();
         const std::string where = fmt::format("camera {} of seed {}", i, subject.seed);
         if (expected.triangle_count() != found.triangle_count()) {
-            throw PromiseBroken(fmt::format("{}: {} triangles at origin 0, {} at origin (1e7, -1e7)", where,
-                                            expected.triangle_count(), found.triangle_count()));
+            throw PromiseBroken(
+                fmt::format("{}: {} triangles at origin 0, {} at origin (1e7, -1e7)", where,
+                            expected.triangle_count(), found.triangle_count()));
         }
         const double allowed = rounding_of(expected);
         for (std::size_t v = 0; v < expected.vertices.size(); ++v) {
-            const glm::dvec3 moved = glm::dvec3(found.vertices[v]) - glm::dvec3(expected.vertices[v]);
-            const double distance = std::max({std::abs(moved.x), std::abs(moved.y), std::abs(moved.z)});
+            const glm::dvec3 moved =
+                glm::dvec3(found.vertices[v]) - glm::dvec3(expected.vertices[v]);
+            const double distance =
+                std::max({std::abs(moved.x), std::abs(moved.y), std::abs(moved.z)});
             if (distance <= allowed) continue;
-            throw PromiseBroken(fmt::format(
-                "{}: at origin (1e7, -1e7) a vertex of triangle {} lies {:.3g} m from where it is at origin 0; "
-                "rounding allows {:.3g} m",
-                where, v / 3, distance, allowed));
+            throw PromiseBroken(
+                fmt::format("{}: at origin (1e7, -1e7) a vertex of triangle {} lies {:.3g} m from "
+                            "where it is at origin 0; "
+                            "rounding allows {:.3g} m",
+                            where, v / 3, distance, allowed));
         }
     }
 }
 
 void parameters_at_their_limits(const Subject& subject) {
-    // Above this a capture costs more memory than the promise is worth; the picture is drawn all the same.
+    // Above this a capture costs more memory than the promise is worth; the picture is drawn all
+    // the same.
     constexpr std::uint64_t kMostCaptured = 4'000'000;
     if (subject.method.params.empty()) throw NotApplicable("the method has no parameters");
     const TerrainPointer terrain = make_terrain("ridged", 33, 33);

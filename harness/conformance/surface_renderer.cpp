@@ -6,7 +6,8 @@ namespace lodbench::conformance {
 
 namespace {
 
-constexpr std::array<gl::ShaderSource, 1> kSources = {{{"conformance/surface.vert", R"GLSL(#version 450 core
+constexpr std::array<gl::ShaderSource, 1> kSources = {
+    {{"conformance/surface.vert", R"GLSL(#version 450 core
 #include "common/terrain.glsl"
 layout(location = 0) in vec3 relative_position;
 void main() {
@@ -23,8 +24,8 @@ SurfaceRenderer::SurfaceRenderer(gl::Device& device, const measure::CapturedSurf
       vertices_(device, "conformance: surface"),
       count_(GLsizei(surface.vertices.size())) {
     if (count_ == 0) return;
-    positions_ = gl::Buffer(device, "conformance: surface",
-                            std::span<const glm::vec3>(surface.vertices));
+    positions_ =
+        gl::Buffer(device, "conformance: surface", std::span<const glm::vec3>(surface.vertices));
     vertices_.attribute(0, 3, positions_, 0, sizeof(glm::vec3));
 }
 

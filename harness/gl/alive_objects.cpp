@@ -42,8 +42,8 @@ std::vector<std::string> differences(const AliveObjects& before, const AliveObje
     std::vector<std::string> result;
     for (const Kind& kind : kKinds) {
         if (before.*kind.count == after.*kind.count) continue;
-        result.push_back(
-            fmt::format("{}: {} before, {} after", kind.name, before.*kind.count, after.*kind.count));
+        result.push_back(fmt::format("{}: {} before, {} after", kind.name, before.*kind.count,
+                                     after.*kind.count));
     }
     return result;
 }

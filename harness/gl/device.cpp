@@ -20,7 +20,8 @@ std::string text_of(GLenum name) {
 }
 
 bool is_software(const std::string& renderer) {
-    for (const char* name : {"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer", "SwiftShader"}) {
+    for (const char* name :
+         {"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer", "SwiftShader"}) {
         if (renderer.find(name) != std::string::npos) return true;
     }
     return false;
@@ -31,12 +32,13 @@ void check_commands(const Buffer& commands, std::size_t offset, GLsizei draw_cou
     const auto count = static_cast<std::size_t>(std::max(draw_count, 0));
     const std::size_t step = stride == 0 ? command_bytes : static_cast<std::size_t>(stride);
     const std::size_t needed = count == 0 ? 0 : (count - 1) * step + command_bytes;
-    if (draw_count < 0 || stride < 0 || stride % 4 != 0 || offset % 4 != 0 || offset > commands.bytes() ||
-        needed > commands.bytes() - offset) {
-        throw ContractError(fmt::format(
-            "indirect draw: {} commands of stride {} at byte {} do not fit into the {} bytes of buffer '{}', or "
-            "are not aligned to 4 bytes",
-            draw_count, stride, offset, commands.bytes(), commands.label()));
+    if (draw_count < 0 || stride < 0 || stride % 4 != 0 || offset % 4 != 0 ||
+        offset > commands.bytes() || needed > commands.bytes() - offset) {
+        throw ContractError(
+            fmt::format("indirect draw: {} commands of stride {} at byte {} do not fit into the {} "
+                        "bytes of buffer '{}', or "
+                        "are not aligned to 4 bytes",
+                        draw_count, stride, offset, commands.bytes(), commands.label()));
     }
 }
 
@@ -65,7 +67,8 @@ Device::Device() {
     }
     std::sort(info_.extensions.begin(), info_.extensions.end());
 
-    // Performance hints and shader statistics are not errors and would cost time where they are formatted.
+    // Performance hints and shader statistics are not errors and would cost time where they are
+    // formatted.
     glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
     for (const GLenum type : {GL_DEBUG_TYPE_ERROR, GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR}) {
         glDebugMessageControl(GL_DONT_CARE, type, GL_DONT_CARE, 0, nullptr, GL_TRUE);
@@ -133,16 +136,19 @@ void Device::count_allocation(std::int64_t bytes) {
 }
 
 template <typename Draw>
-void Device::submit(const Program& program, const VertexArray& vertices, GLenum mode, const Draw& draw) {
-    if (mode != GL_TRIANGLES && mode != GL_TRIANGLE_STRIP && mode != GL_TRIANGLE_FAN && mode != GL_PATCHES) {
+void Device::submit(const Program& program, const VertexArray& vertices, GLenum mode,
+                    const Draw& draw) {
+    if (mode != GL_TRIANGLES && mode != GL_TRIANGLE_STRIP && mode != GL_TRIANGLE_FAN &&
+        mode != GL_PATCHES) {
         throw ContractError(fmt::format(
             "draw with program '{}': mode 0x{:04X}, expected GL_TRIANGLES, GL_TRIANGLE_STRIP, "
             "GL_TRIANGLE_FAN or GL_PATCHES",
             program.label(), mode));
     }
     if (!program || !vertices) {
-        throw ContractError(fmt::format("draw with program '{}': the {} is empty (moved from or never made)",
-                                        program.label(), program ? "vertex array" : "program"));
+        throw ContractError(
+            fmt::format("draw with program '{}': the {} is empty (moved from or never made)",
+                        program.label(), program ? "vertex array" : "program"));
     }
     ++draw_calls_;
     const Scope scope(*this, &program, &vertices);
@@ -155,18 +161,19 @@ void Device::submit(const Program& program, const VertexArray& vertices, GLenum 
     }
 }
 
-void Device::draw_arrays(const Program& program, const VertexArray& vertices, GLenum mode, GLint first,
-                         GLsizei count, GLsizei instances, GLuint base_instance) {
+void Device::draw_arrays(const Program& program, const VertexArray& vertices, GLenum mode,
+                         GLint first, GLsizei count, GLsizei instances, GLuint base_instance) {
     submit(program, vertices, mode, [&] {
         glDrawArraysInstancedBaseInstance(mode, first, count, instances, base_instance);
     });
 }
 
-void Device::draw_elements(const Program& program, const VertexArray& vertices, GLenum mode, GLsizei count,
-                           GLenum type, std::size_t offset, GLsizei instances, GLint base_vertex,
-                           GLuint base_instance) {
+void Device::draw_elements(const Program& program, const VertexArray& vertices, GLenum mode,
+                           GLsizei count, GLenum type, std::size_t offset, GLsizei instances,
+                           GLint base_vertex, GLuint base_instance) {
     submit(program, vertices, mode, [&] {
-        glDrawElementsInstancedBaseVertexBaseInstance(mode, count, type, reinterpret_cast<const void*>(offset),
+        glDrawElementsInstancedBaseVertexBaseInstance(mode, count, type,
+                                                      reinterpret_cast<const void*>(offset),
                                                       instances, base_vertex, base_instance);
     });
 }
@@ -181,13 +188,14 @@ void Device::draw_arrays_indirect(const Program& program, const VertexArray& ver
     });
 }
 
-void Device::draw_elements_indirect(const Program& program, const VertexArray& vertices, GLenum mode,
-                                    GLenum type, const Buffer& commands, std::size_t offset,
-                                    GLsizei draw_count, GLsizei stride) {
+void Device::draw_elements_indirect(const Program& program, const VertexArray& vertices,
+                                    GLenum mode, GLenum type, const Buffer& commands,
+                                    std::size_t offset, GLsizei draw_count, GLsizei stride) {
     check_commands(commands, offset, draw_count, stride, 5 * sizeof(GLuint));
     submit(program, vertices, mode, [&] {
         glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.name());
-        glMultiDrawElementsIndirect(mode, type, reinterpret_cast<const void*>(offset), draw_count, stride);
+        glMultiDrawElementsIndirect(mode, type, reinterpret_cast<const void*>(offset), draw_count,
+                                    stride);
     });
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The one door to the GPU: draw calls, byte accounting, feedback capture. No globals; whoever draws or
-// allocates holds a Device.
+// The one door to the GPU: draw calls, byte accounting, feedback capture. No globals; whoever draws
+// or allocates holds a Device.
 
 #include <GL/glcorearb.h>
 
@@ -82,16 +82,18 @@ public:
     [[nodiscard]] std::uint64_t draw_calls() const { return draw_calls_; }
     [[nodiscard]] const ObjectCounts& objects() const { return objects_; }
 
-    /// Errors and undefined behaviour that the driver's debug callback has reported since the last call,
-    /// one line each, with the labels of the objects that were in use; empty when none. Repetitions and
-    /// what goes beyond 50 different messages are counted, not kept. Source: KHR_debug, synchronous.
+    /// Errors and undefined behaviour that the driver's debug callback has reported since the last
+    /// call, one line each, with the labels of the objects that were in use; empty when none.
+    /// Repetitions and what goes beyond 50 different messages are counted, not kept. Source:
+    /// KHR_debug, synchronous.
     [[nodiscard]] std::vector<std::string> take_errors();
 
-    /// Between begin and end every draw call is fed back instead of rasterised and handed to `sink`,
-    /// in drawing order, one call of `sink` per draw call. Every draw call must be idempotent: it is issued
-    /// again when its triangles did not fit. The span is valid during the call of `sink` only. Throws
-    /// ContractError for a capture within a capture or a draw within someone's GL_PRIMITIVES_GENERATED
-    /// query, EnvironmentError when the driver has no memory for the triangles. For the harness; never timed.
+    /// Between begin and end every draw call is fed back instead of rasterised and handed to
+    /// `sink`, in drawing order, one call of `sink` per draw call. Every draw call must be
+    /// idempotent: it is issued again when its triangles did not fit. The span is valid during the
+    /// call of `sink` only. Throws ContractError for a capture within a capture or a draw within
+    /// someone's GL_PRIMITIVES_GENERATED query, EnvironmentError when the driver has no memory for
+    /// the triangles. For the harness; never timed.
     void begin_capture(CaptureSink sink);
     /// May be called after any exception; does nothing when no capture is open.
     void end_capture() noexcept;

@@ -26,8 +26,8 @@ public:
         : buffer_(buffer),
           data_(glMapNamedBufferRange(buffer, 0, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT)) {
         if (data_ == nullptr) {
-            throw EnvironmentError(
-                fmt::format("capture: the driver did not map {} bytes of captured triangles", bytes));
+            throw EnvironmentError(fmt::format(
+                "capture: the driver did not map {} bytes of captured triangles", bytes));
         }
     }
     ~Mapping() { glUnmapNamedBuffer(buffer_); }
@@ -57,8 +57,8 @@ struct Device::Capture {
         glCreateQueries(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, 1, &written);
         discard_before = glIsEnabled(GL_RASTERIZER_DISCARD) == GL_TRUE;
         glEnable(GL_RASTERIZER_DISCARD);
-        // Draw calls need a complete framebuffer even when nothing is rasterised, and a context without a
-        // surface has none to begin with.
+        // Draw calls need a complete framebuffer even when nothing is rasterised, and a context
+        // without a surface has none to begin with.
         if (glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
             glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_framebuffer_before);
             glCreateFramebuffers(1, &framebuffer);
@@ -113,11 +113,13 @@ void Device::end_capture() noexcept {
 
 void Device::capture_draw(const std::function<void()>& draw) {
     Capture& capture = *capture_;
-    for (const GLenum target : {GL_PRIMITIVES_GENERATED, GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN}) {
+    for (const GLenum target :
+         {GL_PRIMITIVES_GENERATED, GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN}) {
         GLint current = 0;
         glGetQueryiv(target, GL_CURRENT_QUERY, &current);
         if (current != 0) {
-            throw ContractError("capture: a query of primitives is active; end it before a capture");
+            throw ContractError(
+                "capture: a query of primitives is active; end it before a capture");
         }
     }
     if (capture.buffer == 0) capture.allocate(feedback_bytes_);
@@ -147,10 +149,11 @@ void Device::capture_draw(const std::function<void()>& draw) {
         std::tie(generated, written) = feed_back();
     }
     if (written != generated) {
-        throw ContractError(fmt::format(
-            "capture: a draw call generated {} triangles but {} were fed back: expected an idempotent draw call "
-            "of triangles with a program of gl::Program",
-            generated, written));
+        throw ContractError(
+            fmt::format("capture: a draw call generated {} triangles but {} were fed back: "
+                        "expected an idempotent draw call "
+                        "of triangles with a program of gl::Program",
+                        generated, written));
     }
     if (written == 0) {
         capture.sink({});

@@ -17,17 +17,18 @@ constexpr double kSampleLimit = 16777216.0;
 void check(const Camera& camera) {
     const glm::dvec3& eye = camera.position;
     if (!std::isfinite(eye.x) || !std::isfinite(eye.y) || !std::isfinite(eye.z)) {
-        throw ContractError(
-            fmt::format("camera position ({}, {}, {}): expected finite metres", eye.x, eye.y, eye.z));
+        throw ContractError(fmt::format("camera position ({}, {}, {}): expected finite metres",
+                                        eye.x, eye.y, eye.z));
     }
 }
 
-/// A border of the extent relative to the eye, moved outward (`direction` -1 or 1) so that no vertex on the
-/// border is cut. A shader computes such a vertex as n * spacing - eye_offset: spacing, product, offset and
-/// difference are rounded once each, by at most FLT_EPSILON / 2 of their size, and none of them is larger
-/// than |border| + spacing (the offset is half a spacing, or has the border's sign where the eye's sample is
-/// clamped). The border's own rounding makes it five halves; a method that sends positions relative to an
-/// origin of its own rounds twice more. 4 FLT_EPSILON = eight halves: 0.5 m at 1e6 m, 5 mm at 10 km.
+/// A border of the extent relative to the eye, moved outward (`direction` -1 or 1) so that no
+/// vertex on the border is cut. A shader computes such a vertex as n * spacing - eye_offset:
+/// spacing, product, offset and difference are rounded once each, by at most FLT_EPSILON / 2 of
+/// their size, and none of them is larger than |border| + spacing (the offset is half a spacing, or
+/// has the border's sign where the eye's sample is clamped). The border's own rounding makes it
+/// five halves; a method that sends positions relative to an origin of its own rounds twice more. 4
+/// FLT_EPSILON = eight halves: 0.5 m at 1e6 m, 5 mm at 10 km.
 float border(double relative, double spacing, double direction) {
     const double margin = 4 * double(FLT_EPSILON) * (std::abs(relative) + spacing);
     return static_cast<float>(relative + direction * margin);
@@ -35,7 +36,8 @@ float border(double relative, double spacing, double direction) {
 
 }  // namespace
 
-Frame make_frame(const View& view, const Camera& frozen, const TerrainInfo& terrain, bool wireframe) {
+Frame make_frame(const View& view, const Camera& frozen, const TerrainInfo& terrain,
+                 bool wireframe) {
     check(frozen);
     Frame frame{};
     frame.clip_from_relative = view.clip_from_relative;
@@ -64,8 +66,8 @@ Frozen make_frozen(const Camera& frozen, const TerrainInfo& terrain) {
     const auto planes = frozen.frustum_planes();
     for (std::size_t i = 0; i < planes.size(); ++i) block.frozen_planes[i] = glm::vec4(planes[i]);
 
-    // Relative to the south-west corner first: at origins of 1e7 m this difference is exact to 1e-9 m, and
-    // all that follows is small.
+    // Relative to the south-west corner first: at origins of 1e7 m this difference is exact to 1e-9
+    // m, and all that follows is small.
     const glm::dvec2 from_corner = glm::dvec2(frozen.position) - terrain.origin;
     const auto nearest = [](double steps) {
         return std::fmin(std::fmax(std::round(steps), -kSampleLimit), kSampleLimit);
@@ -74,12 +76,14 @@ Frozen make_frozen(const Camera& frozen, const TerrainInfo& terrain) {
     const double row = nearest(terrain.rows - 1 - from_corner.y / terrain.spacing.y);
     const double height = frozen.position.z;
     const auto height_high = static_cast<float>(height);
-    block.eye_offset = {static_cast<float>(from_corner.x - column * terrain.spacing.x),
-                        static_cast<float>(from_corner.y - (terrain.rows - 1 - row) * terrain.spacing.y),
-                        height_high, static_cast<float>(height - double(height_high))};
-    block.sample_spacing = glm::vec4(
-        glm::dvec4(terrain.spacing.x, terrain.spacing.y, frozen.lambda(), 0));
-    block.eye_sample = {static_cast<int>(column), static_cast<int>(row), terrain.columns, terrain.rows};
+    block.eye_offset = {
+        static_cast<float>(from_corner.x - column * terrain.spacing.x),
+        static_cast<float>(from_corner.y - (terrain.rows - 1 - row) * terrain.spacing.y),
+        height_high, static_cast<float>(height - double(height_high))};
+    block.sample_spacing =
+        glm::vec4(glm::dvec4(terrain.spacing.x, terrain.spacing.y, frozen.lambda(), 0));
+    block.eye_sample = {static_cast<int>(column), static_cast<int>(row), terrain.columns,
+                        terrain.rows};
     block.viewport_size = {frozen.viewport.width, frozen.viewport.height, 0, 0};
     return block;
 }

@@ -33,7 +33,8 @@ std::optional<std::string_view> included_name(std::string_view line) {
     constexpr std::string_view kInclude = "include";
     if (!line.starts_with(kInclude)) return std::nullopt;
     line = trimmed_front(line.substr(kInclude.size()));
-    const std::size_t end = line.size() > 1 && line.front() == '"' ? line.find('"', 1) : std::string_view::npos;
+    const std::size_t end =
+        line.size() > 1 && line.front() == '"' ? line.find('"', 1) : std::string_view::npos;
     return end == std::string_view::npos ? std::string_view() : line.substr(1, end - 1);
 }
 
@@ -68,18 +69,20 @@ private:
     void include(std::string_view name, const std::string& file, int line_number) {
         const ShaderSource* source = find_source(name, own_);
         if (source == nullptr) {
-            throw ContractError(fmt::format(
-                "{}:{}: #include \"{}\": no such shader; name it in SHADERS of lodbench_add_method, or include one of "
-                "shaders/common",
-                file, line_number, name));
+            throw ContractError(
+                fmt::format("{}:{}: #include \"{}\": no such shader; name it in SHADERS of "
+                            "lodbench_add_method, or include one of "
+                            "shaders/common",
+                            file, line_number, name));
         }
         if (std::find(open_.begin(), open_.end(), name) != open_.end()) {
             std::string chain;
             for (const std::string& open : open_) chain += open + " -> ";
-            throw ContractError(fmt::format("{}:{}: #include \"{}\" closes a cycle: {}{}", file, line_number, name,
-                                            chain, name));
+            throw ContractError(fmt::format("{}:{}: #include \"{}\" closes a cycle: {}{}", file,
+                                            line_number, name, chain, name));
         }
-        if (std::find(result_.files.begin(), result_.files.end(), name) != result_.files.end()) return;
+        if (std::find(result_.files.begin(), result_.files.end(), name) != result_.files.end())
+            return;
         result_.text += fmt::format("#line 1 {}\n", result_.files.size());
         expand(*source);
     }
@@ -108,21 +111,27 @@ std::string name_files(std::string_view log, std::span<const std::string> files)
         const std::size_t end = log.find('\n');
         std::string_view line = log.substr(0, end);
         log = end == std::string_view::npos ? std::string_view() : log.substr(end + 1);
-        while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0) line.remove_suffix(1);
+        while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0)
+            line.remove_suffix(1);
         if (line.empty() || line == std::string_view("\0", 1)) continue;
         if (!result.empty()) result += "; ";
-        // "0:12(5): error", "0(12) : error", "ERROR: 0:12: ...": the first number is the file's index.
-        const std::size_t prefix = line.starts_with("ERROR: ") ? 7 : line.starts_with("WARNING: ") ? 9 : 0;
+        // "0:12(5): error", "0(12) : error", "ERROR: 0:12: ...": the first number is the file's
+        // index.
+        const std::size_t prefix = line.starts_with("ERROR: ")     ? 7
+                                   : line.starts_with("WARNING: ") ? 9
+                                                                   : 0;
         std::size_t digits = prefix;
         std::size_t index = 0;
-        while (digits < line.size() && digits < prefix + 6 && line[digits] >= '0' && line[digits] <= '9') {
+        while (digits < line.size() && digits < prefix + 6 && line[digits] >= '0' &&
+               line[digits] <= '9') {
             index = index * 10 + static_cast<std::size_t>(line[digits++] - '0');
         }
         const bool located = digits > prefix && digits + 1 < line.size() &&
-                             (line[digits] == ':' || line[digits] == '(') && line[digits + 1] >= '0' &&
-                             line[digits + 1] <= '9';
+                             (line[digits] == ':' || line[digits] == '(') &&
+                             line[digits + 1] >= '0' && line[digits + 1] <= '9';
         if (located && index < files.size()) {
-            result += fmt::format("{}{}{}", line.substr(0, prefix), files[index], line.substr(digits));
+            result +=
+                fmt::format("{}{}{}", line.substr(0, prefix), files[index], line.substr(digits));
         } else {
             result += line;
         }

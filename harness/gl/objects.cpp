@@ -49,7 +49,8 @@ Buffer::Buffer(Device& device, std::string_view label, std::size_t bytes, GLbitf
     : Object(device, GL_BUFFER, create_buffer(), label), bytes_(bytes) {
     ++device.object_counts().buffers;
     device.count_allocation(static_cast<std::int64_t>(bytes));
-    if (bytes == 0) return;  // storage of no bytes is an error in OpenGL, an empty buffer here is not
+    if (bytes == 0)
+        return;  // storage of no bytes is an error in OpenGL, an empty buffer here is not
     forget_errors();
     const Device::Scope scope(device, this);
     glNamedBufferStorage(name_, static_cast<GLsizeiptr>(bytes), data, flags);
@@ -59,8 +60,9 @@ Buffer::Buffer(Device& device, std::string_view label, std::size_t bytes, GLbitf
         glDeleteBuffers(1, &name_);
         --device.object_counts().buffers;
         device.count_allocation(-static_cast<std::int64_t>(bytes));
-        const std::string text = fmt::format("buffer '{}' of {} bytes (flags 0x{:X}): the driver says 0x{:04X}",
-                                             label_, bytes, flags, error);
+        const std::string text =
+            fmt::format("buffer '{}' of {} bytes (flags 0x{:X}): the driver says 0x{:04X}", label_,
+                        bytes, flags, error);
         if (error == GL_OUT_OF_MEMORY) throw EnvironmentError(text + ", out of memory");
         throw ContractError(text);
     }
@@ -86,23 +88,25 @@ Buffer::~Buffer() {
 
 void Buffer::write(std::size_t offset, std::size_t bytes, const void* data) {
     if (offset > bytes_ || bytes > bytes_ - offset) {
-        throw ContractError(fmt::format("write of {} bytes at {} into buffer '{}' of {} bytes", bytes, offset,
-                                        label_, bytes_));
+        throw ContractError(fmt::format("write of {} bytes at {} into buffer '{}' of {} bytes",
+                                        bytes, offset, label_, bytes_));
     }
     if (bytes == 0) return;
     const Device::Scope scope(*device_, this);
-    glNamedBufferSubData(name_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+    glNamedBufferSubData(name_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes),
+                         data);
     device_->count_upload(bytes);
 }
 
 void Buffer::read(std::size_t offset, std::size_t bytes, void* data) const {
     if (offset > bytes_ || bytes > bytes_ - offset) {
-        throw ContractError(fmt::format("read of {} bytes at {} from buffer '{}' of {} bytes", bytes, offset,
-                                        label_, bytes_));
+        throw ContractError(fmt::format("read of {} bytes at {} from buffer '{}' of {} bytes",
+                                        bytes, offset, label_, bytes_));
     }
     if (bytes == 0) return;
     const Device::Scope scope(*device_, this);
-    glGetNamedBufferSubData(name_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+    glGetNamedBufferSubData(name_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes),
+                            data);
 }
 
 void Buffer::bind_uniform(GLuint binding) const {
@@ -133,20 +137,23 @@ VertexArray::~VertexArray() {
 }
 
 // Each attribute has the binding of its own number: simple, and 16 of both are guaranteed.
-void VertexArray::attribute(GLuint location, int components, const Buffer& buffer, std::size_t offset,
-                            GLsizei stride, GLuint divisor) {
+void VertexArray::attribute(GLuint location, int components, const Buffer& buffer,
+                            std::size_t offset, GLsizei stride, GLuint divisor) {
     const Device::Scope scope(*device_, this, &buffer);
-    glVertexArrayVertexBuffer(name_, location, buffer.name(), static_cast<GLintptr>(offset), stride);
+    glVertexArrayVertexBuffer(name_, location, buffer.name(), static_cast<GLintptr>(offset),
+                              stride);
     glVertexArrayAttribFormat(name_, location, components, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(name_, location, location);
     glVertexArrayBindingDivisor(name_, location, divisor);
     glEnableVertexArrayAttrib(name_, location);
 }
 
-void VertexArray::integer_attribute(GLuint location, int components, GLenum type, const Buffer& buffer,
-                                    std::size_t offset, GLsizei stride, GLuint divisor) {
+void VertexArray::integer_attribute(GLuint location, int components, GLenum type,
+                                    const Buffer& buffer, std::size_t offset, GLsizei stride,
+                                    GLuint divisor) {
     const Device::Scope scope(*device_, this, &buffer);
-    glVertexArrayVertexBuffer(name_, location, buffer.name(), static_cast<GLintptr>(offset), stride);
+    glVertexArrayVertexBuffer(name_, location, buffer.name(), static_cast<GLintptr>(offset),
+                              stride);
     glVertexArrayAttribIFormat(name_, location, components, type, 0);
     glVertexArrayAttribBinding(name_, location, location);
     glVertexArrayBindingDivisor(name_, location, divisor);
@@ -171,18 +178,19 @@ Framebuffer::Framebuffer(Device& device, std::string_view label, const Texture* 
     if (depth != nullptr) {
         const bool stencil = depth->internal_format() == GL_DEPTH24_STENCIL8 ||
                              depth->internal_format() == GL_DEPTH32F_STENCIL8;
-        glNamedFramebufferTexture(name_, stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT,
-                                  depth->name(), 0);
+        glNamedFramebufferTexture(
+            name_, stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth->name(), 0);
     }
     const GLenum status = glCheckNamedFramebufferStatus(name_, GL_DRAW_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE) {
         glDeleteFramebuffers(1, &name_);
         --device.object_counts().framebuffers;
-        throw ContractError(fmt::format(
-            "framebuffer '{}' is not complete (0x{:04X}): expected a colour or a depth texture, of formats that "
-            "can be drawn to and of one size; found colour '{}', depth '{}'",
-            label_, status, color != nullptr ? color->label() : "none",
-            depth != nullptr ? depth->label() : "none"));
+        throw ContractError(
+            fmt::format("framebuffer '{}' is not complete (0x{:04X}): expected a colour or a depth "
+                        "texture, of formats that "
+                        "can be drawn to and of one size; found colour '{}', depth '{}'",
+                        label_, status, color != nullptr ? color->label() : "none",
+                        depth != nullptr ? depth->label() : "none"));
     }
 }
 
@@ -230,7 +238,8 @@ void Query::end() const {
 
 void Query::timestamp() const {
     if (target_ != GL_TIMESTAMP) {
-        throw ContractError(fmt::format("query '{}': timestamp() needs the target GL_TIMESTAMP", label_));
+        throw ContractError(
+            fmt::format("query '{}': timestamp() needs the target GL_TIMESTAMP", label_));
     }
     glQueryCounter(name_, GL_TIMESTAMP);
 }

@@ -75,9 +75,10 @@ private:
 class Texture : public Object {
 public:
     Texture() = default;
-    /// `target` GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY (then `layers` > 0). Filters start as nearest, edges as
-    /// clamped, so that integer formats are complete. Throws ContractError for a target, size or format that
-    /// is not known here, EnvironmentError for a size beyond the device's limits or its memory.
+    /// `target` GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY (then `layers` > 0). Filters start as nearest,
+    /// edges as clamped, so that integer formats are complete. Throws ContractError for a target,
+    /// size or format that is not known here, EnvironmentError for a size beyond the device's
+    /// limits or its memory.
     Texture(Device& device, std::string_view label, GLenum target, GLenum internal_format,
             int width, int height, int levels = 1, int layers = 0);
     Texture(Texture&& other) noexcept;
@@ -119,11 +120,12 @@ public:
     void elements(const Buffer& buffer);
 };
 
-/// Bytes of one texel of an internal format, as counted (padding of the driver is not known); ContractError
-/// for a format that is not known here.
+/// Bytes of one texel of an internal format, as counted (padding of the driver is not known);
+/// ContractError for a format that is not known here.
 [[nodiscard]] std::size_t texel_bytes(GLenum internal_format);
 
-/// Bytes of one texel as handed over by (format, type); ContractError for a pair that is not known here.
+/// Bytes of one texel as handed over by (format, type); ContractError for a pair that is not known
+/// here.
 [[nodiscard]] std::size_t transfer_bytes(GLenum format, GLenum type);
 
 /// One colour texture and one depth texture; either may be absent.
@@ -148,7 +150,7 @@ public:
 
     void begin() const;
     void end() const;
-    void timestamp() const;                                      ///< target GL_TIMESTAMP only
+    void timestamp() const;                                   ///< target GL_TIMESTAMP only
     [[nodiscard]] std::optional<std::uint64_t> poll() const;  ///< nothing while not available
     [[nodiscard]] std::uint64_t wait() const;
 
@@ -161,7 +163,8 @@ public:
     Fence() = default;
     explicit Fence(Device& device);
     Fence(Fence&& other) noexcept
-        : device_(std::exchange(other.device_, nullptr)), sync_(std::exchange(other.sync_, nullptr)) {}
+        : device_(std::exchange(other.device_, nullptr)),
+          sync_(std::exchange(other.sync_, nullptr)) {}
     Fence& operator=(Fence&& other) noexcept;
     ~Fence();
     explicit operator bool() const { return sync_ != nullptr; }

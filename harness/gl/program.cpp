@@ -31,7 +31,8 @@ private:
     std::vector<GLuint> names_;
 };
 
-/// Puts the defines behind the #version line, which must come first but for comments and empty lines.
+/// Puts the defines behind the #version line, which must come first but for comments and empty
+/// lines.
 std::string with_defines(const std::string& text, const std::map<std::string, std::string>& defines,
                          const std::string& file) {
     std::size_t begin = text.find("#version");
@@ -39,7 +40,8 @@ std::string with_defines(const std::string& text, const std::map<std::string, st
         begin = text.find("#version", begin + 1);
     }
     if (begin == std::string::npos) {
-        throw ContractError(fmt::format("{}: no #version line; expected \"#version 450 core\" first", file));
+        throw ContractError(
+            fmt::format("{}: no #version line; expected \"#version 450 core\" first", file));
     }
     const std::size_t end = text.find('\n', begin);
     int line = 2;
@@ -70,10 +72,14 @@ std::string program_log(GLuint program) {
 }
 
 bool contains_word(std::string_view text, std::string_view word) {
-    const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-    for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const auto in_word = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    };
+    for (std::size_t at = text.find(word); at != std::string_view::npos;
+         at = text.find(word, at + 1)) {
         const std::size_t end = at + word.size();
-        if ((at == 0 || !in_word(text[at - 1])) && (end == text.size() || !in_word(text[end]))) return true;
+        if ((at == 0 || !in_word(text[at - 1])) && (end == text.size() || !in_word(text[end])))
+            return true;
     }
     return false;
 }
@@ -96,7 +102,8 @@ Program::Linked Program::link(std::string_view label, std::span<const ShaderSour
         GLint compiled = GL_FALSE;
         glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
         if (compiled == GL_FALSE) {
-            throw ContractError(fmt::format("program '{}': {} does not compile: {}", label, stage.source,
+            throw ContractError(fmt::format("program '{}': {} does not compile: {}", label,
+                                            stage.source,
                                             name_files(shader_log(shader), expanded.files)));
         }
         compute = compute || stage.type == GL_COMPUTE_SHADER;
@@ -121,7 +128,8 @@ Program::Linked Program::link(std::string_view label, std::span<const ShaderSour
 }
 
 Program::Program(Device& device, std::string_view label, std::span<const ShaderSource> own,
-                 std::initializer_list<Stage> stages, const std::map<std::string, std::string>& defines)
+                 std::initializer_list<Stage> stages,
+                 const std::map<std::string, std::string>& defines)
     : Program(device, label, link(label, own, stages, defines)) {}
 
 Program::Program(Device& device, std::string_view label, Linked linked)
@@ -154,7 +162,8 @@ GLint Program::location(std::string_view name) {
     const std::string text(name);
     const GLint found = glGetUniformLocation(name_, text.c_str());
     if (found < 0 && !contains_word(sources_, name.substr(0, name.find_first_of("[.")))) {
-        throw ContractError(fmt::format("program '{}' has no uniform '{}' in any of its sources", label_, name));
+        throw ContractError(
+            fmt::format("program '{}' has no uniform '{}' in any of its sources", label_, name));
     }
     locations_.emplace(text, found);
     return found;

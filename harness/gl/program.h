@@ -34,23 +34,24 @@ struct Stage {
 };
 
 /// Replaces each line `#include "NAME"` by the file of that name, once per text, keeping compiler
-/// messages right with #line (the file's index is its place in `files`). `own` is searched before the
-/// common shaders. Throws ContractError for a missing file or a cycle, naming file and line.
+/// messages right with #line (the file's index is its place in `files`). `own` is searched before
+/// the common shaders. Throws ContractError for a missing file or a cycle, naming file and line.
 struct Expanded {
     std::string text;
     std::vector<std::string> files;
 };
 [[nodiscard]] Expanded expand_includes(std::string_view name, std::span<const ShaderSource> own);
 
-/// A compiler's log in one line, with the names of the files in place of their numbers; understands the
-/// forms of Mesa ("0:12(5): ..."), NVIDIA ("0(12) : ...") and AMD ("ERROR: 0:12: ...").
+/// A compiler's log in one line, with the names of the files in place of their numbers; understands
+/// the forms of Mesa ("0:12(5): ..."), NVIDIA ("0(12) : ...") and AMD ("ERROR: 0:12: ...").
 [[nodiscard]] std::string name_files(std::string_view log, std::span<const std::string> files);
 
 class Program : public Object {
 public:
     Program() = default;
-    /// Compiles and links; all but compute programs feed back gl_Position. Each of `defines` becomes "#define NAME VALUE" after the #version line.
-    /// Throws ContractError with the compiler's words, file names instead of numbers.
+    /// Compiles and links; all but compute programs feed back gl_Position. Each of `defines`
+    /// becomes "#define NAME VALUE" after the #version line. Throws ContractError with the
+    /// compiler's words, file names instead of numbers.
     Program(Device& device, std::string_view label, std::span<const ShaderSource> own,
             std::initializer_list<Stage> stages,
             const std::map<std::string, std::string>& defines = {});
@@ -58,8 +59,8 @@ public:
     Program& operator=(Program&& other) noexcept;
     ~Program();
 
-    // Uniforms by name; a name that the linker has removed is passed over in silence, a name that no
-    // source file contains is a ContractError.
+    // Uniforms by name; a name that the linker has removed is passed over in silence, a name that
+    // no source file contains is a ContractError.
     void set(std::string_view name, int value);
     void set(std::string_view name, unsigned value);
     void set(std::string_view name, float value);
@@ -82,7 +83,8 @@ private:
                        const std::map<std::string, std::string>& defines);
     [[nodiscard]] GLint location(std::string_view name);
     std::map<std::string, GLint, std::less<>> locations_;
-    std::string sources_;  ///< all stages' expanded text, to tell a removed uniform from a misspelt one
+    std::string
+        sources_;  ///< all stages' expanded text, to tell a removed uniform from a misspelt one
 };
 
 }  // namespace lodbench::gl

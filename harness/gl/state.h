@@ -6,10 +6,11 @@
 
 namespace lodbench::gl {
 
-/// A snapshot of the current context: framebuffers, viewport, scissor, depth, clip control, blending, masks,
-/// culling, polygon mode and offset, clip distances, rasteriser discard, stencil, primitive restart,
-/// multisampling, pixel store, active feedback and queries, the host's uniform blocks, debug output. Bound
-/// programs, vertex arrays, textures and bindings from kFirstFreeBinding up are a method's own and left out.
+/// A snapshot of the current context: framebuffers, viewport, scissor, depth, clip control,
+/// blending, masks, culling, polygon mode and offset, clip distances, rasteriser discard, stencil,
+/// primitive restart, multisampling, pixel store, active feedback and queries, the host's uniform
+/// blocks, debug output. Bound programs, vertex arrays, textures and bindings from
+/// kFirstFreeBinding up are a method's own and left out.
 class PipelineState {
 public:
     [[nodiscard]] static PipelineState capture();
@@ -21,8 +22,8 @@ public:
     void restore() const;
 
 private:
-    /// Every value as glGetDoublev gives it, exact for 32-bit integers, in the order of the tables of
-    /// state.cpp.
+    /// Every value as glGetDoublev gives it, exact for 32-bit integers, in the order of the tables
+    /// of state.cpp.
     std::vector<bool> enabled_;
     std::vector<std::vector<double>> values_;
 };

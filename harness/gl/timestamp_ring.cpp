@@ -14,8 +14,9 @@ bool plausible_interval(std::uint64_t from, std::uint64_t to, std::uint64_t encl
 
 TimestampRing::TimestampRing(Device& device, int frames, int intervals) {
     if (frames < 2 || intervals < 1) {
-        throw ContractError(fmt::format(
-            "timestamp ring of {} frames and {} intervals: expected at least 2 and 1", frames, intervals));
+        throw ContractError(
+            fmt::format("timestamp ring of {} frames and {} intervals: expected at least 2 and 1",
+                        frames, intervals));
     }
     frames_.resize(static_cast<std::size_t>(frames));
     for (Frame& frame : frames_) {
@@ -32,7 +33,8 @@ void TimestampRing::begin_frame(std::int64_t frame) {
     const bool first = !started_;
     if (started_) current_ = (current_ + 1) % frames_.size();
     started_ = true;
-    // Oldest first. The frame just ended is left alone: never read in its own frame, nor right after it.
+    // Oldest first. The frame just ended is left alone: never read in its own frame, nor right
+    // after it.
     for (std::size_t i = 0; i + 1 < frames_.size(); ++i) {
         collect(frames_[(current_ + i) % frames_.size()], false);
     }
@@ -49,10 +51,10 @@ void TimestampRing::begin_frame(std::int64_t frame) {
 void TimestampRing::begin(std::string_view name) {
     Frame& frame = frames_[current_];
     if (!started_ || frame.used == frame.intervals.size()) {
-        throw ContractError(fmt::format("timestamp '{}': {}", name,
-                                        started_ ? fmt::format("the ring has {} intervals a frame",
-                                                               frame.intervals.size())
-                                                 : std::string("expected begin_frame first")));
+        throw ContractError(fmt::format(
+            "timestamp '{}': {}", name,
+            started_ ? fmt::format("the ring has {} intervals a frame", frame.intervals.size())
+                     : std::string("expected begin_frame first")));
     }
     Interval& interval = frame.intervals[frame.used++];
     interval.name = name;
@@ -82,8 +84,8 @@ void TimestampRing::collect(Frame& frame, bool wait) {
         const auto from = wait ? std::optional(interval.from.wait()) : interval.from.poll();
         if (!from || !to) continue;
         interval.pending = false;
-        const auto enclosing = std::chrono::duration_cast<std::chrono::nanoseconds>(SteadyClock::now() -
-                                                                                    interval.begun);
+        const auto enclosing = std::chrono::duration_cast<std::chrono::nanoseconds>(
+            SteadyClock::now() - interval.begun);
         if (frame.first) {
             ++losses_.discarded;
         } else if (!plausible_interval(*from, *to, static_cast<std::uint64_t>(enclosing.count()))) {

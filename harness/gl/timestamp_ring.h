@@ -25,9 +25,9 @@ struct TimestampLosses {
     std::uint64_t overflows = 0;  ///< not there yet when their place in the ring was needed
 };
 
-/// The CPU interval that encloses one on the GPU goes from the call of `begin` to the reading of the result:
-/// the GPU cannot start before the one, nor end after the other. Intervals may nest; those of one frame have
-/// different names. No call waits for the GPU but `finish`.
+/// The CPU interval that encloses one on the GPU goes from the call of `begin` to the reading of
+/// the result: the GPU cannot start before the one, nor end after the other. Intervals may nest;
+/// those of one frame have different names. No call waits for the GPU but `finish`.
 class TimestampRing {
 public:
     /// `frames` in flight (>= 2), each with up to `intervals` intervals (>= 1).
@@ -69,7 +69,9 @@ private:
     TimestampLosses losses_;
 };
 
-/// The rule by itself: whether a pair of timestamps makes an interval within `enclosing_ns` of CPU time.
-[[nodiscard]] bool plausible_interval(std::uint64_t from, std::uint64_t to, std::uint64_t enclosing_ns);
+/// The rule by itself: whether a pair of timestamps makes an interval within `enclosing_ns` of CPU
+/// time.
+[[nodiscard]] bool plausible_interval(std::uint64_t from, std::uint64_t to,
+                                      std::uint64_t enclosing_ns);
 
 }  // namespace lodbench::gl

@@ -19,15 +19,17 @@ bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return glm::cross(b - a, c - a) != glm::dvec3(0.0);
 }
 
-/// A convex polygon: a triangle cut by four planes has seven corners at most; a few more cost nothing.
+/// A convex polygon: a triangle cut by four planes has seven corners at most; a few more cost
+/// nothing.
 struct Polygon {
     std::array<glm::dvec3, 8> corners;
     std::size_t count = 0;
     void add(const glm::dvec3& corner) { corners[count++] = corner; }
 };
 
-/// The half of the polygon where sign * (corner[axis] - border) >= 0 (Sutherland and Hodgman, Reentrant
-/// Polygon Clipping, 1974). New corners get the border's coordinate itself, not its rounding.
+/// The half of the polygon where sign * (corner[axis] - border) >= 0 (Sutherland and Hodgman,
+/// Reentrant Polygon Clipping, 1974). New corners get the border's coordinate itself, not its
+/// rounding.
 Polygon cut(const Polygon& polygon, int axis, double border, double sign) {
     Polygon kept;
     for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -37,7 +39,8 @@ Polygon cut(const Polygon& polygon, int axis, double border, double sign) {
         const double to_distance = sign * (to[axis] - border);
         if (from_distance >= 0) kept.add(from);
         if ((from_distance < 0 && to_distance > 0) || (from_distance > 0 && to_distance < 0)) {
-            glm::dvec3 corner = from + (to - from) * (from_distance / (from_distance - to_distance));
+            glm::dvec3 corner =
+                from + (to - from) * (from_distance / (from_distance - to_distance));
             corner[axis] = border;
             kept.add(corner);
         }
@@ -54,7 +57,8 @@ CaptureView capture_view(const Camera& frozen, const TerrainInfo& terrain) {
     for (int axis = 0; axis < 3; ++axis) {
         reach = std::max({reach, std::abs(low[axis]), std::abs(high[axis])});
     }
-    if (!std::isfinite(reach)) throw ContractError("capture_view: expected a camera at a finite position");
+    if (!std::isfinite(reach))
+        throw ContractError("capture_view: expected a camera at a finite position");
     int exponent = 0;
     std::frexp(reach, &exponent);  // reach <= 2^exponent
     CaptureView result;
@@ -67,7 +71,8 @@ CaptureView capture_view(const Camera& frozen, const TerrainInfo& terrain) {
     return result;
 }
 
-CapturedSurface capture(gl::Device& device, const CaptureView& view, const std::function<void()>& draw) {
+CapturedSurface capture(gl::Device& device, const CaptureView& view,
+                        const std::function<void()>& draw) {
     CapturedSurface surface;
     surface.origin = view.view.origin;
     const auto scale = static_cast<float>(view.scale);
@@ -91,7 +96,8 @@ CapturedSurface capture(gl::Device& device, const CaptureView& view, const std::
     return surface;
 }
 
-std::vector<glm::dvec3> clipped_triangles(const CapturedSurface& surface, const TerrainInfo& terrain) {
+std::vector<glm::dvec3> clipped_triangles(const CapturedSurface& surface,
+                                          const TerrainInfo& terrain) {
     const glm::dvec2 origin(surface.origin);
     const glm::dvec2 low = terrain.extent_min() - origin;
     const glm::dvec2 high = terrain.extent_max() - origin;

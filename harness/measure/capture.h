@@ -1,5 +1,6 @@
 #pragma once
-// The surface that a method really sent to the rasteriser: its frozen selection through transform feedback.
+// The surface that a method really sent to the rasteriser: its frozen selection through transform
+// feedback.
 
 #include <array>
 #include <cstdint>
@@ -13,9 +14,9 @@
 
 namespace lodbench::measure {
 
-/// Captured triangles, three vertices each, in drawing order, as fed back: positions relative to `origin`
-/// (the frozen eye) in metres after undoing the power of two. NaN and infinite vertices are kept: whoever
-/// measures must see them.
+/// Captured triangles, three vertices each, in drawing order, as fed back: positions relative to
+/// `origin` (the frozen eye) in metres after undoing the power of two. NaN and infinite vertices
+/// are kept: whoever measures must see them.
 struct CapturedSurface {
     glm::dvec3 origin{0.0};
     std::vector<glm::vec3> vertices;  ///< size is a multiple of 3; metres relative to origin
@@ -25,23 +26,23 @@ struct CapturedSurface {
     }
 };
 
-/// The view of a capture: origin = the frozen eye, matrix = 2^-k * identity with w = 1, k such that the
-/// terrain fits into [-1, 1].
+/// The view of a capture: origin = the frozen eye, matrix = 2^-k * identity with w = 1, k such that
+/// the terrain fits into [-1, 1].
 struct CaptureView {
     View view;
     double scale = 1;  ///< 2^k: metres per captured unit
 };
 [[nodiscard]] CaptureView capture_view(const Camera& frozen, const TerrainInfo& terrain);
 
-/// Runs `draw` between begin_capture and end_capture with the rasteriser off and collects what it drew.
-/// The uniform blocks must already describe `view`. Throws ContractError for a vertex whose w is not 1;
-/// no capture is left open.
+/// Runs `draw` between begin_capture and end_capture with the rasteriser off and collects what it
+/// drew. The uniform blocks must already describe `view`. Throws ContractError for a vertex whose w
+/// is not 1; no capture is left open.
 [[nodiscard]] CapturedSurface capture(gl::Device& device, const CaptureView& view,
                                       const std::function<void()>& draw);
 
-/// Clips to the terrain's extent in double (Sutherland-Hodgman on x and y) and drops degenerate triangles
-/// (two equal vertices, or no area in 3-D) and those with a vertex that is not finite (see nonfinite_count).
-/// World coordinates, three vertices each.
+/// Clips to the terrain's extent in double (Sutherland-Hodgman on x and y) and drops degenerate
+/// triangles (two equal vertices, or no area in 3-D) and those with a vertex that is not finite
+/// (see nonfinite_count). World coordinates, three vertices each.
 [[nodiscard]] std::vector<glm::dvec3> clipped_triangles(const CapturedSurface& surface,
                                                         const TerrainInfo& terrain);
 

@@ -47,10 +47,12 @@ TimerVerdict judge_timer(double timer_ms, double bracket_ms) {
     TimerVerdict verdict;
     verdict.timer_ms = timer_ms;
     verdict.bracket_ms = bracket_ms;
-    verdict.trustworthy = timer_ms >= 0.5 * bracket_ms && timer_ms <= 1.05 * bracket_ms && bracket_ms > 0;
-    verdict.text = fmt::format("GPU timer {}: {:.3f} ms by timestamp queries, {:.3f} ms between two glFinish{}",
-                               verdict.trustworthy ? "agrees with the clock" : "cannot be believed", timer_ms,
-                               bracket_ms, verdict.trustworthy ? "" : "; GPU times are bracketed instead");
+    verdict.trustworthy =
+        timer_ms >= 0.5 * bracket_ms && timer_ms <= 1.05 * bracket_ms && bracket_ms > 0;
+    verdict.text = fmt::format(
+        "GPU timer {}: {:.3f} ms by timestamp queries, {:.3f} ms between two glFinish{}",
+        verdict.trustworthy ? "agrees with the clock" : "cannot be believed", timer_ms, bracket_ms,
+        verdict.trustworthy ? "" : "; GPU times are bracketed instead");
     return verdict;
 }
 
@@ -60,14 +62,15 @@ TimerVerdict test_timer(gl::Device& device) {
     const gl::Texture color(device, "timer load", GL_TEXTURE_2D, GL_RGBA8, kSize, kSize);
     const gl::Framebuffer framebuffer(device, "timer load", &color, nullptr);
     const gl::VertexArray vertices(device, "timer load");
-    const gl::Program program(device, "timer load", kShaders,
-                              {{GL_VERTEX_SHADER, "timer_load.vert"}, {GL_FRAGMENT_SHADER, "timer_load.frag"}});
+    const gl::Program program(
+        device, "timer load", kShaders,
+        {{GL_VERTEX_SHADER, "timer_load.vert"}, {GL_FRAGMENT_SHADER, "timer_load.frag"}});
     const gl::Query from(device, "timer load", GL_TIMESTAMP);
     const gl::Query to(device, "timer load", GL_TIMESTAMP);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glViewport(0, 0, kSize, kSize);
-    for (const GLenum capability : {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_CULL_FACE, GL_BLEND,
-                                    GL_RASTERIZER_DISCARD}) {
+    for (const GLenum capability : {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_CULL_FACE,
+                                    GL_BLEND, GL_RASTERIZER_DISCARD}) {
         glDisable(capability);
     }
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
@@ -80,7 +83,8 @@ TimerVerdict test_timer(gl::Device& device) {
         for (int i = 0; i < draws; ++i) device.draw_arrays(program, vertices, GL_TRIANGLES, 0, 3);
         to.timestamp();
         glFinish();
-        const double bracket_ms = std::chrono::duration<double, std::milli>(SteadyClock::now() - start).count();
+        const double bracket_ms =
+            std::chrono::duration<double, std::milli>(SteadyClock::now() - start).count();
         // Signed: a timer that runs backwards must look like one.
         timer_ms = static_cast<double>(static_cast<std::int64_t>(to.wait() - from.wait())) * 1e-6;
         return bracket_ms;

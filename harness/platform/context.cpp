@@ -27,7 +27,8 @@ bool names(std::string_view list, std::string_view extension) {
     for (std::size_t at = list.find(extension); at != std::string_view::npos;
          at = list.find(extension, at + 1)) {
         const std::size_t end = at + extension.size();
-        if ((at == 0 || list[at - 1] == ' ') && (end == list.size() || list[end] == ' ')) return true;
+        if ((at == 0 || list[at - 1] == ' ') && (end == list.size() || list[end] == ' '))
+            return true;
     }
     return false;
 }
@@ -66,7 +67,8 @@ std::vector<Candidate> find_candidates(std::string& why_no_devices) {
     const std::string client = text_or_empty(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));
     const auto query_devices = load<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
     const auto query_string = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
-    const bool enumerable = names(client, "EGL_EXT_device_base") || names(client, "EGL_EXT_device_enumeration");
+    const bool enumerable =
+        names(client, "EGL_EXT_device_base") || names(client, "EGL_EXT_device_enumeration");
     if (enumerable && names(client, "EGL_EXT_platform_device") && query_devices != nullptr) {
         EGLint count = 0;
         if (query_devices(0, nullptr, &count) == EGL_FALSE) count = 0;
@@ -78,34 +80,40 @@ std::vector<Candidate> find_candidates(std::string& why_no_devices) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
             Candidate candidate{static_cast<int>(i), devices[i], "", false};
             if (query_string != nullptr) {
-                const std::string extensions = text_or_empty(query_string(devices[i], EGL_EXTENSIONS));
+                const std::string extensions =
+                    text_or_empty(query_string(devices[i], EGL_EXTENSIONS));
                 candidate.software = names(extensions, "EGL_MESA_device_software");
                 if (names(extensions, "EGL_EXT_device_drm")) {
-                    candidate.file = text_or_empty(query_string(devices[i], EGL_DRM_DEVICE_FILE_EXT));
+                    candidate.file =
+                        text_or_empty(query_string(devices[i], EGL_DRM_DEVICE_FILE_EXT));
                 }
             }
-            if (candidate.file.empty()) candidate.file = candidate.software ? "software" : "EGL device";
+            if (candidate.file.empty())
+                candidate.file = candidate.software ? "software" : "EGL device";
             candidates.push_back(std::move(candidate));
         }
     } else {
-        why_no_devices = "EGL cannot enumerate devices (EGL_EXT_device_enumeration, EGL_EXT_platform_device)";
+        why_no_devices =
+            "EGL cannot enumerate devices (EGL_EXT_device_enumeration, EGL_EXT_platform_device)";
     }
     if (names(client, "EGL_MESA_platform_surfaceless")) {
-        candidates.push_back({static_cast<int>(candidates.size()), EGL_NO_DEVICE_EXT, "surfaceless", true});
+        candidates.push_back(
+            {static_cast<int>(candidates.size()), EGL_NO_DEVICE_EXT, "surfaceless", true});
     }
     return candidates;
 }
 
 bool is_software(std::string_view renderer) {
-    constexpr std::array<std::string_view, 5> kNames = {"llvmpipe", "softpipe", "swrast", "Software Rasterizer",
-                                                        "SwiftShader"};
+    constexpr std::array<std::string_view, 5> kNames = {"llvmpipe", "softpipe", "swrast",
+                                                        "Software Rasterizer", "SwiftShader"};
     return std::any_of(kNames.begin(), kNames.end(), [&](std::string_view name) {
         return renderer.find(name) != std::string_view::npos;
     });
 }
 
-/// A context that is current. Displays are never terminated: EGL hands the same display to everyone who asks
-/// for a device, and terminating it would take it from them too; the process's end does it.
+/// A context that is current. Displays are never terminated: EGL hands the same display to everyone
+/// who asks for a device, and terminating it would take it from them too; the process's end does
+/// it.
 class Opened {
 public:
     Opened() = default;
@@ -145,10 +153,11 @@ std::optional<Opened> Opened::open(const Candidate& candidate, std::string& fail
     }
     Opened opened;
     const bool surfaceless = candidate.device == EGL_NO_DEVICE_EXT;
-    opened.display_ =
-        surfaceless ? get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
-                    : get_display(EGL_PLATFORM_DEVICE_EXT, candidate.device, nullptr);
-    if (opened.display_ == EGL_NO_DISPLAY || eglInitialize(opened.display_, nullptr, nullptr) == EGL_FALSE) {
+    opened.display_ = surfaceless
+                          ? get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
+                          : get_display(EGL_PLATFORM_DEVICE_EXT, candidate.device, nullptr);
+    if (opened.display_ == EGL_NO_DISPLAY ||
+        eglInitialize(opened.display_, nullptr, nullptr) == EGL_FALSE) {
         failure = "no display: " + egl_error();
         return std::nullopt;
     }
@@ -163,25 +172,31 @@ std::optional<Opened> Opened::open(const Candidate& candidate, std::string& fail
     }
     EGLConfig config = EGL_NO_CONFIG_KHR;
     if (!names(extensions, "EGL_KHR_no_config_context")) {
-        constexpr std::array<EGLint, 5> kWanted = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE,
-                                                   EGL_PBUFFER_BIT, EGL_NONE};
+        constexpr std::array<EGLint, 5> kWanted = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                                   EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
         EGLint count = 0;
-        if (eglChooseConfig(opened.display_, kWanted.data(), &config, 1, &count) == EGL_FALSE || count == 0) {
+        if (eglChooseConfig(opened.display_, kWanted.data(), &config, 1, &count) == EGL_FALSE ||
+            count == 0) {
             failure = "no configuration for OpenGL: " + egl_error();
             return std::nullopt;
         }
     }
-    constexpr std::array<EGLint, 9> kContext = {EGL_CONTEXT_MAJOR_VERSION, 4,
-                                                EGL_CONTEXT_MINOR_VERSION, 5,
+    constexpr std::array<EGLint, 9> kContext = {EGL_CONTEXT_MAJOR_VERSION,
+                                                4,
+                                                EGL_CONTEXT_MINOR_VERSION,
+                                                5,
                                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                                EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE, EGL_NONE};
+                                                EGL_CONTEXT_OPENGL_DEBUG,
+                                                EGL_TRUE,
+                                                EGL_NONE};
     opened.context_ = eglCreateContext(opened.display_, config, EGL_NO_CONTEXT, kContext.data());
     if (opened.context_ == EGL_NO_CONTEXT) {
         failure = "no OpenGL 4.5 core context: " + egl_error();
         return std::nullopt;
     }
-    if (eglMakeCurrent(opened.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, opened.context_) == EGL_FALSE) {
+    if (eglMakeCurrent(opened.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, opened.context_) ==
+        EGL_FALSE) {
         failure = "context cannot be made current: " + egl_error();
         return std::nullopt;
     }
@@ -230,10 +245,12 @@ std::vector<DeviceEntry> list_devices() {
         std::string failure;
         const std::optional<Opened> opened = Opened::open(candidate, failure);
         if (opened) {
-            entries.push_back({candidate.number, fmt::format("{} ({})", opened->renderer, candidate.file),
+            entries.push_back({candidate.number,
+                               fmt::format("{} ({})", opened->renderer, candidate.file),
                                is_software(opened->renderer)});
         } else {
-            entries.push_back({candidate.number, fmt::format("{} (cannot be used: {})", candidate.file, failure),
+            entries.push_back({candidate.number,
+                               fmt::format("{} (cannot be used: {})", candidate.file, failure),
                                candidate.software});
         }
     }
@@ -247,7 +264,8 @@ struct Context::Impl {
 
 Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
     if (eglGetCurrentContext() != EGL_NO_CONTEXT) {
-        throw ContractError("platform::Context: another context is current on this thread; destroy it first");
+        throw ContractError(
+            "platform::Context: another context is current on this thread; destroy it first");
     }
     std::string tried;
     const auto note = [&](const std::string& text) { tried += (tried.empty() ? "" : "; ") + text; };
@@ -256,15 +274,16 @@ Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
     if (!why_no_devices.empty()) note(why_no_devices);
 
     const std::optional<int> number = as_number(device);
-    // Two rounds: what renders in hardware, then whatever renders. A name may lie in the renderer, which is
-    // known only once the context stands.
+    // Two rounds: what renders in hardware, then whatever renders. A name may lie in the renderer,
+    // which is known only once the context stands.
     for (const bool software : {false, true}) {
         for (const Candidate& candidate : candidates) {
             if (number && candidate.number != *number) continue;
             if (!software && candidate.software) continue;
             std::string failure;
             std::optional<Opened> opened = Opened::open(candidate, failure);
-            const std::string label = fmt::format("device {} ({})", candidate.number, candidate.file);
+            const std::string label =
+                fmt::format("device {} ({})", candidate.number, candidate.file);
             if (!opened) {
                 if (software == candidate.software) note(label + ": " + failure);
                 continue;
@@ -273,7 +292,8 @@ Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
             const std::string name = fmt::format("{} ({})", opened->renderer, candidate.file);
             if (!number && lower(name).find(lower(device)) == std::string::npos) {
                 if (software == is_software(opened->renderer)) {
-                    note(fmt::format("{} is '{}', which does not contain '{}'", label, opened->renderer, device));
+                    note(fmt::format("{} is '{}', which does not contain '{}'", label,
+                                     opened->renderer, device));
                 }
                 continue;
             }
@@ -286,9 +306,11 @@ Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
         note(fmt::format("there is no device {}; numbers end at {}", *number,
                          static_cast<int>(candidates.size()) - 1));
     }
-    throw EnvironmentError(fmt::format(
-        "no OpenGL 4.5 core context{}: {}; install a driver (Debian: libegl1, libgl1-mesa-dri) or name another device",
-        device.empty() ? "" : fmt::format(" for device '{}'", device), tried.empty() ? "nothing to try" : tried));
+    throw EnvironmentError(
+        fmt::format("no OpenGL 4.5 core context{}: {}; install a driver (Debian: libegl1, "
+                    "libgl1-mesa-dri) or name another device",
+                    device.empty() ? "" : fmt::format(" for device '{}'", device),
+                    tried.empty() ? "nothing to try" : tried));
 }
 
 Context::~Context() = default;

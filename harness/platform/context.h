@@ -10,18 +10,19 @@ namespace lodbench::platform {
 /// One EGL device as `lodbench list --devices` shows it.
 struct DeviceEntry {
     int number = 0;
-    std::string name;      ///< renderer where it can be asked, else the driver's file or "software"
+    std::string name;  ///< renderer where it can be asked, else the driver's file or "software"
     bool software = false;
 };
 
 [[nodiscard]] std::vector<DeviceEntry> list_devices();
 
-/// An OpenGL 4.5 core debug context without a surface, current on the creating thread until destroyed.
+/// An OpenGL 4.5 core debug context without a surface, current on the creating thread until
+/// destroyed.
 class Context {
 public:
-    /// `device`: "" for the best (hardware, then software), a number of list_devices(), or a part of a
-    /// name. Throws EnvironmentError with everything that was tried and what each attempt said,
-    /// ContractError while another context is current on this thread.
+    /// `device`: "" for the best (hardware, then software), a number of list_devices(), or a part
+    /// of a name. Throws EnvironmentError with everything that was tried and what each attempt
+    /// said, ContractError while another context is current on this thread.
     explicit Context(const std::string& device = "");
     ~Context();
     Context(const Context&) = delete;

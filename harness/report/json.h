@@ -18,9 +18,12 @@ namespace lodbench::report {
 /// Null for an absent or non-finite number.
 [[nodiscard]] Json::Value number(std::optional<double> value);
 
-/// Readers of what was parsed: throw InputError naming `where` and the key for a wrong or missing type.
-[[nodiscard]] std::string get_string(const Json::Value& object, const char* key, const std::string& where);
-[[nodiscard]] double get_number(const Json::Value& object, const char* key, const std::string& where);
+/// Readers of what was parsed: throw InputError naming `where` and the key for a wrong or missing
+/// type.
+[[nodiscard]] std::string get_string(const Json::Value& object, const char* key,
+                                     const std::string& where);
+[[nodiscard]] double get_number(const Json::Value& object, const char* key,
+                                const std::string& where);
 [[nodiscard]] const Json::Value& get_array(const Json::Value& object, const char* key,
                                            const std::string& where);
 

@@ -6,8 +6,8 @@
 
 namespace lodbench::report {
 
-/// Writes an 8-bit RGB picture, row 0 at the top, width * height * 3 bytes, whole or not at all. Throws
-/// EnvironmentError with the file and the system's words.
+/// Writes an 8-bit RGB picture, row 0 at the top, width * height * 3 bytes, whole or not at all.
+/// Throws EnvironmentError with the file and the system's words.
 void write_png(const std::filesystem::path& path, int width, int height,
                std::span<const std::uint8_t> rgb);
 

@@ -66,8 +66,10 @@ void write_whole(const fs::path& path, std::string_view text) {
     std::error_code ignored;
     if (const fs::file_status status = fs::status(path, ignored);
         fs::exists(status) && !fs::is_regular_file(status)) {
-        throw EnvironmentError(fmt::format("cannot write {}: it is not a regular file; choose another "
-                                           "place with --out", path.string()));
+        throw EnvironmentError(
+            fmt::format("cannot write {}: it is not a regular file; choose another "
+                        "place with --out",
+                        path.string()));
     }
     int error = 0;
     {

@@ -1,6 +1,6 @@
 #pragma once
-// Results on disk: names and meaning as in the README's table of fields. Files are written whole or not at
-// all.
+// Results on disk: names and meaning as in the README's table of fields. Files are written whole or
+// not at all.
 
 #include <filesystem>
 #include <string>
@@ -11,19 +11,20 @@ namespace lodbench::report {
 
 inline constexpr int kSchemaVersion = 1;
 
-/// Writes `text` to a temporary file in the same folder, syncs it and renames it over `path`. Throws
-/// EnvironmentError naming the file and the system's words (a full disk); `path` is then as it was.
+/// Writes `text` to a temporary file in the same folder, syncs it and renames it over `path`.
+/// Throws EnvironmentError naming the file and the system's words (a full disk); `path` is then as
+/// it was.
 void write_whole(const std::filesystem::path& path, std::string_view text);
 
-/// Appends one line (without its newline) to a JSON-lines file with a single write, synced; on failure the file is
-/// truncated back to what it was and EnvironmentError thrown.
+/// Appends one line (without its newline) to a JSON-lines file with a single write, synced; on
+/// failure the file is truncated back to what it was and EnvironmentError thrown.
 void append_line(const std::filesystem::path& path, std::string_view line);
 
 /// All of a file. Throws EnvironmentError with its name and the system's words.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// Complete lines of a JSON-lines file; a last line without newline (a writer was killed) is dropped and
-/// the file cut back to the last complete line when `repair`.
+/// Complete lines of a JSON-lines file; a last line without newline (a writer was killed) is
+/// dropped and the file cut back to the last complete line when `repair`.
 [[nodiscard]] std::vector<std::string> read_lines(const std::filesystem::path& path, bool repair);
 
 }  // namespace lodbench::report

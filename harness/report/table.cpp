@@ -72,7 +72,8 @@ std::map<std::string, std::set<std::string>> swept_names(const std::vector<Json:
     return swept;
 }
 
-std::string label_of(const Json::Value& cell, const std::map<std::string, std::set<std::string>>& swept) {
+std::string label_of(const Json::Value& cell,
+                     const std::map<std::string, std::set<std::string>>& swept) {
     std::string label = cell["method"].asString();
     const auto names = swept.find(label);
     if (names == swept.end()) return label;
@@ -85,9 +86,9 @@ std::string label_of(const Json::Value& cell, const std::map<std::string, std::s
 }  // namespace
 
 const std::vector<std::string>& table_columns() {
-    static const std::vector<std::string> columns = {
-        "method", "fps (range)", "median ms", "P90 ms",  "max ms",
-        "triangles", "prepare s", "GPU MiB",   "RSS MiB"};
+    static const std::vector<std::string> columns = {"method",    "fps (range)", "median ms",
+                                                     "P90 ms",    "max ms",      "triangles",
+                                                     "prepare s", "GPU MiB",     "RSS MiB"};
     return columns;
 }
 
@@ -105,9 +106,9 @@ std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uin
             if ((*cell)["status"].asString() == "ok") {
                 good.push_back(cell);
             } else {
-                row.failures.push_back(fmt::format("{} (repetition {}): {}", (*cell)["status"].asString(),
-                                                   (*cell)["repetition"].asInt(),
-                                                   (*cell)["reason"].asString()));
+                row.failures.push_back(
+                    fmt::format("{} (repetition {}): {}", (*cell)["status"].asString(),
+                                (*cell)["repetition"].asInt(), (*cell)["reason"].asString()));
             }
         }
         row.fields = {fps_text(good, seed),

@@ -11,8 +11,8 @@ namespace lodbench::report {
 /// One method with one set of parameters on one scenario, over its repetitions.
 struct TableRow {
     std::string scenario;
-    std::string label;                ///< the method's id and the parameters that differ between its rows
-    std::vector<std::string> fields;  ///< as kTableColumns after the first
+    std::string label;  ///< the method's id and the parameters that differ between its rows
+    std::vector<std::string> fields;    ///< as kTableColumns after the first
     std::vector<std::string> failures;  ///< "status: reason" of the repetitions that are not ok
 };
 
@@ -20,7 +20,8 @@ struct TableRow {
 [[nodiscard]] const std::vector<std::string>& table_columns();
 
 /// Rows in order of scenario and label. `seed` is that of the bootstrap.
-[[nodiscard]] std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uint64_t seed);
+[[nodiscard]] std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells,
+                                               std::uint64_t seed);
 
 /// For a terminal: columns aligned, one block a scenario, failures below. For summary.md: Markdown.
 [[nodiscard]] std::string text_table(const std::vector<TableRow>& rows);

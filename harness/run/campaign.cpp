@@ -76,12 +76,17 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
 class Campaign {
 public:
     Campaign(const RunRequest& request, const fs::path& program, CampaignObserver& observer)
-        : request_(request), program_(program), observer_(observer), folder_(fs::absolute(request.out)) {
+        : request_(request),
+          program_(program),
+          observer_(observer),
+          folder_(fs::absolute(request.out)) {
         outcome_.out = folder_.path();
         const bool known = fs::exists(folder_.path() / "run.json");
         if (folder_.holds_a_run() && !request.resume) {
-            throw InputError(fmt::format("{}: this folder already holds a run; add --resume to finish it, or "
-                                         "choose another with --out", folder_.path().string()));
+            throw InputError(
+                fmt::format("{}: this folder already holds a run; add --resume to finish it, or "
+                            "choose another with --out",
+                            folder_.path().string()));
         }
         if (known) {
             take_up();
@@ -106,7 +111,8 @@ public:
 
 private:
     void start() {
-        const std::vector<PluginListing> plugins = list_plugins(plugin_folders(request_.plugin_dirs));
+        const std::vector<PluginListing> plugins =
+            list_plugins(plugin_folders(request_.plugin_dirs));
         plan_ = make_plan(request_, plugins);
         outcome_.warnings = plan_.warnings;
         for (const scenario::Scenario& scenario : plan_.scenarios) {
@@ -120,10 +126,11 @@ private:
         const fs::path file = folder_.path() / "run.json";
         run_ = report::parse_json(report::read_text(file), file.string());
         if (!run_.isObject() || run_["schema_version"] != report::kSchemaVersion) {
-            throw InputError(fmt::format("{}: schema_version is {}, expected {}; resume it with the lodbench "
-                                         "that began it", file.string(),
-                                         run_.isObject() ? report::to_text(run_["schema_version"]) : "absent",
-                                         report::kSchemaVersion));
+            throw InputError(fmt::format(
+                "{}: schema_version is {}, expected {}; resume it with the lodbench "
+                "that began it",
+                file.string(), run_.isObject() ? report::to_text(run_["schema_version"]) : "absent",
+                report::kSchemaVersion));
         }
         try {
             plan_ = plan_from_json(run_, folder_.path());
@@ -131,12 +138,14 @@ private:
             throw InputError(fmt::format("{}: {}", file.string(), error.what()));
         }
         refuse_other_request(file);
-        for (const Json::Value& warning : run_["warnings"]) outcome_.warnings.push_back(warning.asString());
+        for (const Json::Value& warning : run_["warnings"])
+            outcome_.warnings.push_back(warning.asString());
         outcome_.cells = folder_.repair();
         for (const Json::Value& cell : outcome_.cells) finished_.insert(cell["cell"].asString());
     }
 
-    /// What is asked for beside --resume must be what the run began with: it is flown as it was planned.
+    /// What is asked for beside --resume must be what the run began with: it is flown as it was
+    /// planned.
     void refuse_other_request(const fs::path& file) const {
         if (!request_.names_cells()) return;
         const Plan asked = make_plan(request_, list_plugins(plugin_folders(request_.plugin_dirs)));
@@ -144,9 +153,10 @@ private:
             std::ranges::equal(asked.scenarios, plan_.scenarios, {}, &scenario::Scenario::text,
                                &scenario::Scenario::text);
         if (same_scenarios && plan_to_json(asked) == run_["cells"]) return;
-        throw InputError(fmt::format("--resume: the other arguments or what they name differ from {}; give "
-                                     "--resume and --out alone, or as it began: {}",
-                                     file.string(), run_["command_line"].asString()));
+        throw InputError(
+            fmt::format("--resume: the other arguments or what they name differ from {}; give "
+                        "--resume and --out alone, or as it began: {}",
+                        file.string(), run_["command_line"].asString()));
     }
 
     void fly_cell_at(std::size_t index) {
@@ -158,12 +168,12 @@ private:
         cell.spec.scenario_base = plan_.bases[which];
         const CellLimits limits{scenario.cell_time_limit_s, scenario.frame_time_limit_s,
                                 scenario.memory_limit_bytes};
-        const CellResult result = run_cell(
-            cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
-            [&](int done, int total) {
-                observer_.cell_progress(cell, index, plan_.cells.size(),
-                                        total > 0 ? double(done) / double(total) : 0.0);
-            });
+        const CellResult result =
+            run_cell(cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
+                     [&](int done, int total) {
+                         observer_.cell_progress(cell, index, plan_.cells.size(),
+                                                 total > 0 ? double(done) / double(total) : 0.0);
+                     });
         if (!result.environment_error.empty()) throw EnvironmentError(result.environment_error);
         if (!result.input_error.empty()) throw InputError(result.input_error);
         const Json::Value record =
@@ -178,17 +188,22 @@ private:
         observer_.cell_finished(cell, index, plan_.cells.size(), record);
     }
 
-    void write_run() { report::write_whole(folder_.path() / "run.json", report::to_text(run_, true) + "\n"); }
+    void write_run() {
+        report::write_whole(folder_.path() / "run.json", report::to_text(run_, true) + "\n");
+    }
 
     void write_summary() {
         const auto line = [this](const char* title, const Json::Value& value) {
-            return value.isNull() ? std::string() : fmt::format("- {}: {}\n", title, value.asString());
+            return value.isNull() ? std::string()
+                                  : fmt::format("- {}: {}\n", title, value.asString());
         };
         std::string text = "# lodbench run\n\n";
         text += line("lodbench", run_["tool_version"]) + line("commit", run_["commit"]);
-        text += line("command", run_["command_line"]) + line("system", run_["os"]) + line("CPU", run_["cpu"]);
+        text += line("command", run_["command_line"]) + line("system", run_["os"]) +
+                line("CPU", run_["cpu"]);
         if (run_["gl"].isObject()) {
-            text += line("renderer", run_["gl"]["renderer"]) + line("OpenGL", run_["gl"]["version"]);
+            text +=
+                line("renderer", run_["gl"]["renderer"]) + line("OpenGL", run_["gl"]["version"]);
             text += line("timer", run_["gl"]["timer_verdict"]);
         }
         text += fmt::format("- seed: {}\n\n", plan_.seed);
@@ -226,7 +241,8 @@ private:
 int CampaignOutcome::exit_status() const {
     const auto has_status = [this](std::initializer_list<const char*> wanted) {
         return std::ranges::any_of(cells, [&](const Json::Value& cell) {
-            return std::ranges::any_of(wanted, [&](const char* status) { return cell["status"] == status; });
+            return std::ranges::any_of(
+                wanted, [&](const char* status) { return cell["status"] == status; });
         });
     };
     if (has_status({"failed", "crashed", "timeout"})) return kCellFailed;

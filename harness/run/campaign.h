@@ -1,5 +1,6 @@
 #pragma once
-// A campaign: its cells one after the other, each in a process of its own, and what is on disk at any moment.
+// A campaign: its cells one after the other, each in a process of its own, and what is on disk at
+// any moment.
 
 #include <json/value.h>
 
@@ -19,26 +20,27 @@ public:
     CampaignObserver(const CampaignObserver&) = delete;
     CampaignObserver& operator=(const CampaignObserver&) = delete;
     virtual void warned(const std::string& /*warning*/) {}
-    virtual void cell_progress(const PlannedCell& /*cell*/, std::size_t /*index*/, std::size_t /*count*/,
-                               double /*fraction*/) {}
-    virtual void cell_finished(const PlannedCell& /*cell*/, std::size_t /*index*/, std::size_t /*count*/,
-                               const Json::Value& /*record*/) {}
+    virtual void cell_progress(const PlannedCell& /*cell*/, std::size_t /*index*/,
+                               std::size_t /*count*/, double /*fraction*/) {}
+    virtual void cell_finished(const PlannedCell& /*cell*/, std::size_t /*index*/,
+                               std::size_t /*count*/, const Json::Value& /*record*/) {}
 };
 
 struct CampaignOutcome {
     std::filesystem::path out;
-    std::vector<Json::Value> cells;     ///< all that stand in cells.jsonl
+    std::vector<Json::Value> cells;  ///< all that stand in cells.jsonl
     std::vector<std::string> warnings;
     std::uint64_t seed = 1;
-    std::string error;                  ///< why it ended early (a full disk); "" when it did not
+    std::string error;  ///< why it ended early (a full disk); "" when it did not
     /// 0, 3 or 4, as measurement.md says.
     [[nodiscard]] int exit_status() const;
 };
 
-/// Plans, or with `resume` takes up, a campaign and flies what is missing. `program` is what a cell's child
-/// runs. Throws InputError or EnvironmentError before the first cell; after it, whatever stops the campaign
-/// is in the outcome, and what was finished stays.
-[[nodiscard]] CampaignOutcome run_campaign(const RunRequest& request, const std::filesystem::path& program,
+/// Plans, or with `resume` takes up, a campaign and flies what is missing. `program` is what a
+/// cell's child runs. Throws InputError or EnvironmentError before the first cell; after it,
+/// whatever stops the campaign is in the outcome, and what was finished stays.
+[[nodiscard]] CampaignOutcome run_campaign(const RunRequest& request,
+                                           const std::filesystem::path& program,
                                            CampaignObserver& observer);
 
 }  // namespace lodbench::run

@@ -25,7 +25,7 @@ struct CellSpec {
     Settings settings;
     int repetition = 0;
     std::uint64_t seed = 1;
-    std::string device;  ///< as for platform::Context
+    std::string device;         ///< as for platform::Context
     std::filesystem::path out;  ///< results folder
 };
 
@@ -37,7 +37,8 @@ struct Range {
     T min{}, max{};
 };
 
-/// One row of frames/<cell>.csv. Counts come from the lockstep replay, times from the timing replay.
+/// One row of frames/<cell>.csv. Counts come from the lockstep replay, times from the timing
+/// replay.
 struct FrameRecord {
     int frame = 0;
     double wall_ms = 0, select_ms = 0, submit_ms = 0, cpu_ms = 0;
@@ -49,15 +50,16 @@ struct FrameRecord {
 struct CellResult {
     CellStatus status = CellStatus::failed;
     std::string reason;  ///< names plugin and call; empty when ok
-    /// Not the method's failure: what the environment refused (no device, no disk) or what is wrong with
-    /// the input (terrain, path), in words. The campaign ends there and can be resumed; both empty else.
+    /// Not the method's failure: what the environment refused (no device, no disk) or what is wrong
+    /// with the input (terrain, path), in words. The campaign ends there and can be resumed; both
+    /// empty else.
     std::string environment_error, input_error;
     std::vector<FrameRecord> frames;
     double prepare_s = 0, prepare_cpu_s = 0, upload_s = 0;
     std::optional<std::uint64_t> gpu_bytes, peak_rss_bytes;
     std::uint64_t samples_served = 0;
-    Counters counters;      ///< means over the frames of the lockstep replay
-    std::string depth_hash; ///< at the randomly chosen frame, lockstep
+    Counters counters;       ///< means over the frames of the lockstep replay
+    std::string depth_hash;  ///< at the randomly chosen frame, lockstep
     std::string terrain_name, terrain_checksum;
     std::optional<double> claimed_px;
     std::vector<std::string> warnings;
@@ -68,8 +70,8 @@ struct CellResult {
     int warmup_frames = 0, frames_in_flight = 0;  ///< of the timing replay
 };
 
-/// Flies one cell in this process: load, prepare, timing replay, lockstep replay, shots. Throws nothing:
-/// whatever goes wrong is in the result. Reports each call and frame to `signs`.
+/// Flies one cell in this process: load, prepare, timing replay, lockstep replay, shots. Throws
+/// nothing: whatever goes wrong is in the result. Reports each call and frame to `signs`.
 [[nodiscard]] CellResult fly_cell(const CellSpec& spec, VitalSigns& signs);
 
 }  // namespace lodbench::run

@@ -92,8 +92,8 @@ Json::Value to_json(const FrameRecord& frame) {
         row.append(number(value));
     }
     row.append(number(frame.gpu_ms));
-    for (const auto& value : {frame.triangles, frame.triangles_nondegenerate, frame.draw_calls,
-                              frame.uploaded_bytes}) {
+    for (const auto& value :
+         {frame.triangles, frame.triangles_nondegenerate, frame.draw_calls, frame.uploaded_bytes}) {
         row.append(count(value));
     }
     return row;
@@ -128,10 +128,18 @@ FrameRecord read_frame(const Json::Value& row, const std::string& where) {
 constexpr std::array kStatusNames = {"ok", "skipped", "failed", "crashed", "timeout"};
 
 // Later work measures these; until then they are there and null.
-constexpr std::array kNotYetMeasured = {
-    "screen_error_px", "visible_error_px", "pixel_error_px", "pixel_error_realtime_px",
-    "crack_pixels",    "skirt_pixels",     "uncovered_samples", "silhouette_px",
-    "popping_px",      "height_rmse_m",    "image",             "bound_honesty"};
+constexpr std::array kNotYetMeasured = {"screen_error_px",
+                                        "visible_error_px",
+                                        "pixel_error_px",
+                                        "pixel_error_realtime_px",
+                                        "crack_pixels",
+                                        "skirt_pixels",
+                                        "uncovered_samples",
+                                        "silhouette_px",
+                                        "popping_px",
+                                        "height_rmse_m",
+                                        "image",
+                                        "bound_honesty"};
 
 /// JsonCpp throws its own errors for wrong types.
 template <typename Body>
@@ -153,7 +161,8 @@ Json::Value to_json(const Params& params) {
     Json::Value json = Json::objectValue;
     for (const auto& [name, value] : params.values()) {
         if (const bool* flag = std::get_if<bool>(&value)) json[name] = *flag;
-        if (const auto* integer = std::get_if<std::int64_t>(&value)) json[name] = Json::Int64(*integer);
+        if (const auto* integer = std::get_if<std::int64_t>(&value))
+            json[name] = Json::Int64(*integer);
         if (const double* real = std::get_if<double>(&value)) json[name] = number(*real);
         if (const auto* choice = std::get_if<std::string>(&value)) json[name] = *choice;
     }
@@ -199,9 +208,11 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         const Json::Value& overrides = json["overrides"];
         if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
         if (overrides.isMember("seed")) spec.overrides.seed = overrides["seed"].asUInt64();
-        if (overrides.isMember("repetitions")) spec.overrides.repetitions = overrides["repetitions"].asInt();
+        if (overrides.isMember("repetitions"))
+            spec.overrides.repetitions = overrides["repetitions"].asInt();
         if (overrides.isMember("width")) {
-            spec.overrides.viewport = Viewport{overrides["width"].asInt(), overrides["height"].asInt()};
+            spec.overrides.viewport =
+                Viewport{overrides["width"].asInt(), overrides["height"].asInt()};
         }
         spec.method = report::get_string(json, "method", where);
         spec.plugin = report::get_string(json, "plugin", where);
@@ -275,7 +286,8 @@ CellResult read_result(std::string_view text, const std::string& where) {
         result.samples_served = json["samples_served"].asUInt64();
         for (const Json::Value& pair : report::get_array(json, "counters", where)) {
             // A figure that is not finite has no number in JSON.
-            result.counters.emplace_back(pair[0].asString(), pair[1].isNull() ? NAN : pair[1].asDouble());
+            result.counters.emplace_back(pair[0].asString(),
+                                         pair[1].isNull() ? NAN : pair[1].asDouble());
         }
         result.depth_hash = report::get_string(json, "depth_hash", where);
         result.terrain_name = report::get_string(json, "terrain_name", where);
@@ -335,7 +347,8 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["prepare_cpu_s"] = measured ? number(result.prepare_cpu_s) : Json::Value::null;
     json["prepare_cached"] = measured ? Json::Value(false) : Json::Value::null;
     json["upload_s"] = measured ? number(result.upload_s) : Json::Value::null;
-    json["samples_served"] = measured ? Json::Value(Json::UInt64(result.samples_served)) : Json::Value::null;
+    json["samples_served"] =
+        measured ? Json::Value(Json::UInt64(result.samples_served)) : Json::Value::null;
     json["gpu_bytes"] = count(result.gpu_bytes);
     json["peak_rss_bytes"] = count(result.peak_rss_bytes);
     json["counters"] = Json::objectValue;
@@ -353,11 +366,14 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
 
 std::string frames_csv(const std::vector<FrameRecord>& frames) {
     std::string csv = std::string(kFrameColumns) + "\n";
-    const auto field = [](const auto& value) { return value ? fmt::format("{}", *value) : std::string(); };
+    const auto field = [](const auto& value) {
+        return value ? fmt::format("{}", *value) : std::string();
+    };
     for (const FrameRecord& f : frames) {
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", f.frame, f.wall_ms, f.select_ms, f.submit_ms,
-                           f.cpu_ms, field(f.gpu_ms), field(f.triangles), field(f.triangles_nondegenerate),
-                           field(f.draw_calls), field(f.uploaded_bytes));
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", f.frame, f.wall_ms, f.select_ms,
+                           f.submit_ms, f.cpu_ms, field(f.gpu_ms), field(f.triangles),
+                           field(f.triangles_nondegenerate), field(f.draw_calls),
+                           field(f.uploaded_bytes));
     }
     return csv;
 }

@@ -1,5 +1,6 @@
-// One cell: load, prepare, then the same flight twice. The timing replay captures nothing; the lockstep
-// replay counts and measures and is never timed. A picture that both draw ties them together.
+// One cell: load, prepare, then the same flight twice. The timing replay captures nothing; the
+// lockstep replay counts and measures and is never timed. A picture that both draw ties them
+// together.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -33,7 +34,9 @@ scenario::Scenario read_scenario(const CellSpec& spec) {
 double process_cpu_seconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    const auto seconds = [](const timeval& t) {
+        return double(t.tv_sec) + 1e-6 * double(t.tv_usec);
+    };
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -150,7 +153,8 @@ void Flight::prepare() {
 void Flight::choose_frames() {
     shots_ = scenario_.measure.shots;
     if (shots_.empty()) shots_ = {0, scenario_.frames / 2, scenario_.frames - 1};
-    // The frame whose picture is compared between the replays: by the seed, different per repetition.
+    // The frame whose picture is compared between the replays: by the seed, different per
+    // repetition.
     base::SplitMix64 random(spec_.seed);
     random.skip(std::uint64_t(spec_.repetition));
     hashed_frame_ = int(random.below(std::uint64_t(scenario_.frames)));
@@ -241,9 +245,9 @@ void Flight::measure_frame(FrameRecord& record) {
         return !std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z);
     });
     if (broken > 0) {
-        throw MethodFailure(fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
-                                        spec_.plugin.filename().string(), broken,
-                                        surface.vertices.size()));
+        throw MethodFailure(
+            fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
+                        spec_.plugin.filename().string(), broken, surface.vertices.size()));
     }
     record.triangles_nondegenerate = measure::nondegenerate_count(surface);
 }

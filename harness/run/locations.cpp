@@ -29,7 +29,8 @@ fs::path executable_path() {
     std::error_code error;
     fs::path path = fs::read_symlink("/proc/self/exe", error);
     if (error) {
-        throw EnvironmentError(fmt::format("cannot read /proc/self/exe: {}; is /proc mounted?", error.message()));
+        throw EnvironmentError(
+            fmt::format("cannot read /proc/self/exe: {}; is /proc mounted?", error.message()));
     }
     return path;
 }
@@ -50,7 +51,8 @@ fs::path demo_scenario() {
     fs::path file = scenario_folder() / "demo.toml";
     if (!fs::exists(file)) {
         throw EnvironmentError(fmt::format(
-            "the demo scenario {} is missing; install lodbench whole or name a scenario", file.string()));
+            "the demo scenario {} is missing; install lodbench whole or name a scenario",
+            file.string()));
     }
     return file;
 }

@@ -16,7 +16,8 @@ namespace lodbench::run {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the PLY is written as it lies in memory");
+static_assert(std::endian::native == std::endian::little,
+              "the PLY is written as it lies in memory");
 
 using Bits = std::array<std::uint64_t, 3>;
 
@@ -31,8 +32,8 @@ struct HashBits {
     }
 };
 
-/// `key(i)` is the position by which vertex i is told from others, `world(i)` where it lies. A float widens
-/// to a double one to one, so that equal floats have equal keys and no others.
+/// `key(i)` is the position by which vertex i is told from others, `world(i)` where it lies. A
+/// float widens to a double one to one, so that equal floats have equal keys and no others.
 template <typename Key, typename World>
 Mesh weld_by(std::size_t count, const Key& key, const World& world) {
     Mesh mesh;
@@ -41,8 +42,8 @@ Mesh weld_by(std::size_t count, const Key& key, const World& world) {
     numbers.reserve(count / 4);
     for (std::size_t i = 0; i < mesh.triangles.size() * 3; ++i) {
         const glm::dvec3 position = key(i) + 0.0;  // -0 becomes 0
-        const auto [entry, is_new] = numbers.try_emplace(std::bit_cast<Bits>(position),
-                                                         std::uint32_t(mesh.vertices.size()));
+        const auto [entry, is_new] =
+            numbers.try_emplace(std::bit_cast<Bits>(position), std::uint32_t(mesh.vertices.size()));
         if (is_new) mesh.vertices.push_back(world(i));
         mesh.triangles[i / 3][i % 3] = entry->second;
     }
@@ -97,7 +98,8 @@ std::string header(const Mesh& mesh, const MeshContext& context) {
     add("frame", fmt::format("{}", context.frame));
     add("camera_position_m", fmt::format("{:.17g} {:.17g} {:.17g}", camera.position.x,
                                          camera.position.y, camera.position.z));
-    add("camera_orientation_wxyz", fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", q.w, q.x, q.y, q.z));
+    add("camera_orientation_wxyz",
+        fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", q.w, q.x, q.y, q.z));
     add("vertical_fov_rad", fmt::format("{:.17g}", camera.vertical_fov));
     add("near_plane_m", fmt::format("{:.17g}", camera.near_plane));
     add("viewport_px", fmt::format("{} {}", camera.viewport.width, camera.viewport.height));
@@ -135,15 +137,17 @@ std::uint64_t not_finite_count(const measure::CapturedSurface& surface) {
 std::string ply(const Mesh& mesh, const MeshContext& context) {
     constexpr std::size_t kMostVertices = std::size_t(std::numeric_limits<std::int32_t>::max());
     if (mesh.vertices.size() > kMostVertices) {
-        throw InputError(fmt::format("the mesh has {} vertices, a PLY's int indices reach {}; "
-                                     "choose a coarser setting with --set",
-                                     mesh.vertices.size(), kMostVertices));
+        throw InputError(
+            fmt::format("the mesh has {} vertices, a PLY's int indices reach {}; "
+                        "choose a coarser setting with --set",
+                        mesh.vertices.size(), kMostVertices));
     }
     constexpr std::size_t kVertexBytes = 3 * sizeof(double);
     constexpr std::size_t kIndexBytes = 3 * sizeof(std::uint32_t);
     std::string text = header(mesh, context);
     std::size_t at = text.size();
-    text.resize(at + mesh.vertices.size() * kVertexBytes + mesh.triangles.size() * (1 + kIndexBytes));
+    text.resize(at + mesh.vertices.size() * kVertexBytes +
+                mesh.triangles.size() * (1 + kIndexBytes));
     static_assert(sizeof(glm::dvec3) == kVertexBytes);
     if (!mesh.vertices.empty()) {
         std::memcpy(&text[at], mesh.vertices.data(), mesh.vertices.size() * kVertexBytes);

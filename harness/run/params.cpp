@@ -39,7 +39,8 @@ std::string expectation(const ParamInfo& param) {
         case ParamType::boolean: return "true or false";
         case ParamType::integer:
             return fmt::format("an integer in {:.0f}..{:.0f}", param.minimum, param.maximum);
-        case ParamType::real: return fmt::format("a number in {}..{}", param.minimum, param.maximum);
+        case ParamType::real:
+            return fmt::format("a number in {}..{}", param.minimum, param.maximum);
         case ParamType::choice: break;
     }
     return fmt::format("one of {}", fmt::join(param.choices, ", "));
@@ -54,12 +55,14 @@ std::optional<ParamValue> parse(const ParamInfo& param, const std::string& text)
             if (text == "true" || text == "false") return text == "true";
             return std::nullopt;
         case ParamType::integer:
-            if (const auto value = parse_number<std::int64_t>(text); value && in_range(double(*value))) {
+            if (const auto value = parse_number<std::int64_t>(text);
+                value && in_range(double(*value))) {
                 return *value;
             }
             return std::nullopt;
         case ParamType::real:
-            if (const auto value = parse_number<double>(text); value && in_range(*value)) return *value;
+            if (const auto value = parse_number<double>(text); value && in_range(*value))
+                return *value;
             return std::nullopt;
         case ParamType::choice: break;
     }
@@ -69,9 +72,7 @@ std::optional<ParamValue> parse(const ParamInfo& param, const std::string& text)
 
 }  // namespace
 
-Params make_params(const MethodInfo& method,
-                   const Settings& settings,
-                   const std::string& where) {
+Params make_params(const MethodInfo& method, const Settings& settings, const std::string& where) {
     Params params;
     for (const ParamInfo& param : method.params) params.set(param.name, default_value(param));
     std::vector<std::string> seen;
@@ -80,19 +81,22 @@ Params make_params(const MethodInfo& method,
         if (param == method.params.end()) {
             std::vector<std::string> known;
             for (const ParamInfo& info : method.params) known.push_back(info.name);
-            throw InputError(fmt::format("{}: method '{}' has no parameter '{}'; {}", where, method.id, name,
-                                         known.empty() ? std::string("it has none at all")
-                                                       : fmt::format("known: {}", fmt::join(known, ", "))));
+            throw InputError(
+                fmt::format("{}: method '{}' has no parameter '{}'; {}", where, method.id, name,
+                            known.empty() ? std::string("it has none at all")
+                                          : fmt::format("known: {}", fmt::join(known, ", "))));
         }
         if (std::ranges::find(seen, name) != seen.end()) {
-            throw InputError(fmt::format("{}: parameter '{}' of method '{}' is given twice; give it once",
-                                         where, name, method.id));
+            throw InputError(
+                fmt::format("{}: parameter '{}' of method '{}' is given twice; give it once", where,
+                            name, method.id));
         }
         seen.push_back(name);
         const auto value = parse(*param, text);
         if (!value) {
-            throw InputError(fmt::format("{}: '{}' is no value for parameter '{}' of method '{}'; give {}",
-                                         where, text, name, method.id, expectation(*param)));
+            throw InputError(
+                fmt::format("{}: '{}' is no value for parameter '{}' of method '{}'; give {}",
+                            where, text, name, method.id, expectation(*param)));
         }
         params.set(name, *value);
     }

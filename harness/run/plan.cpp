@@ -61,9 +61,10 @@ std::vector<Settings> combinations(const scenario::MethodRequest& request, int r
     for (const auto& [name, values] : request.settings) {
         count *= values.size();
         if (count > kMostCells) {
-            throw InputError(fmt::format("{}: the lists of method '{}' and {} repetitions make more than {} "
-                                         "cells; shorten them",
-                                         request.where, request.id, repetitions, kMostCells));
+            throw InputError(
+                fmt::format("{}: the lists of method '{}' and {} repetitions make more than {} "
+                            "cells; shorten them",
+                            request.where, request.id, repetitions, kMostCells));
         }
     }
     std::vector<Settings> result(1);
@@ -81,13 +82,14 @@ std::vector<Settings> combinations(const scenario::MethodRequest& request, int r
 }
 
 /// Safe as a file name.
-std::string cell_id(const std::string& method, const Settings& settings, const std::string& scenario,
-                    int repetition) {
+std::string cell_id(const std::string& method, const Settings& settings,
+                    const std::string& scenario, int repetition) {
     std::string id = method;
     for (const auto& [name, value] : settings) id += fmt::format("__{}={}", name, value);
     id += fmt::format("__{}__r{}", scenario, repetition);
     for (char& c : id) {
-        const bool safe = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+        const bool safe = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          (c >= '0' && c <= '9') ||
                           std::string_view("._=+-").find(c) != std::string_view::npos;
         if (!safe) c = '-';
     }
@@ -118,7 +120,8 @@ std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scena
     for (scenario::MethodRequest& request : requests) {
         for (const CommandSetting& setting : command) {
             if (setting.method != request.id) continue;
-            std::erase_if(request.settings, [&](const auto& s) { return s.first == setting.parameter; });
+            std::erase_if(request.settings,
+                          [&](const auto& s) { return s.first == setting.parameter; });
             request.settings.emplace_back(setting.parameter, setting.values);
             request.where = setting.where;
         }
@@ -135,11 +138,13 @@ bool RunRequest::names_cells() const {
 }
 
 void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {
-    std::ranges::stable_sort(cells, {}, [](const PlannedCell& cell) { return cell.spec.repetition; });
+    std::ranges::stable_sort(cells, {},
+                             [](const PlannedCell& cell) { return cell.spec.repetition; });
     base::SplitMix64 random(seed);
     for (std::size_t begin = 0; begin < cells.size();) {
         std::size_t end = begin;
-        while (end < cells.size() && cells[end].spec.repetition == cells[begin].spec.repetition) ++end;
+        while (end < cells.size() && cells[end].spec.repetition == cells[begin].spec.repetition)
+            ++end;
         // Fisher-Yates; std::shuffle differs between standard libraries.
         for (std::size_t i = end - 1; i > begin; --i) {
             std::swap(cells[i], cells[begin + random.below(i - begin + 1)]);
@@ -167,8 +172,10 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
         scenario::apply(request.overrides, scenario);
         if (std::ranges::find(plan.scenarios, scenario.name, &scenario::Scenario::name) !=
             plan.scenarios.end()) {
-            throw InputError(fmt::format("{}: a scenario named '{}' is already in this run; give one another "
-                                         "name", file.string(), scenario.name));
+            throw InputError(
+                fmt::format("{}: a scenario named '{}' is already in this run; give one another "
+                            "name",
+                            file.string(), scenario.name));
         }
         const fs::path base = fs::absolute(file).parent_path();
         for (const auto& wanted : requests_of(scenario, request.methods, command, methods)) {
@@ -180,7 +187,8 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
                     CellSpec spec;
                     spec.id = cell_id(method.id, settings, scenario.name, repetition);
                     if (!ids.insert(spec.id).second) {
-                        if (repetition == 0) plan.warnings.push_back(spec.id + " is asked for twice and flown once");
+                        if (repetition == 0)
+                            plan.warnings.push_back(spec.id + " is asked for twice and flown once");
                         continue;
                     }
                     spec.overrides = request.overrides;
@@ -199,8 +207,9 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     for (const CommandSetting& setting : command) {
         (void)find_method(plugins, setting.method, setting.where);
         if (!used.contains(setting.method)) {
-            throw InputError(fmt::format("{}: method '{}' is not flown in this run; add --method {}",
-                                         setting.where, setting.method, setting.method));
+            throw InputError(
+                fmt::format("{}: method '{}' is not flown in this run; add --method {}",
+                            setting.where, setting.method, setting.method));
         }
     }
     if (plan.cells.empty()) {
@@ -251,14 +260,15 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out) {
         if (!plugin.refusal.empty()) throw InputError("cannot resume: " + plugin.refusal);
         const auto method = std::ranges::find(plugin.methods, cell.spec.method, &MethodInfo::id);
         if (method == plugin.methods.end()) {
-            throw InputError(fmt::format("cannot resume: plugin {} no longer holds method '{}'", path,
-                                         cell.spec.method));
+            throw InputError(fmt::format("cannot resume: plugin {} no longer holds method '{}'",
+                                         path, cell.spec.method));
         }
         cell.params = make_params(*method, cell.spec.settings, where);
         plan.cells.push_back(std::move(cell));
     }
     for (std::size_t i = 0; i < plan.scenarios.size(); ++i) {
-        const auto cell = std::ranges::find(plan.cells, plan.scenarios[i].name, &PlannedCell::scenario);
+        const auto cell =
+            std::ranges::find(plan.cells, plan.scenarios[i].name, &PlannedCell::scenario);
         if (cell != plan.cells.end()) scenario::apply(cell->spec.overrides, plan.scenarios[i]);
     }
     plan.seed = run["seed"].asUInt64();

@@ -1,5 +1,6 @@
 #pragma once
-// What a campaign will fly: method x swept settings x scenario x repetition, in seeded random order.
+// What a campaign will fly: method x swept settings x scenario x repetition, in seeded random
+// order.
 
 #include <json/value.h>
 
@@ -42,16 +43,16 @@ struct Plan {
     std::vector<std::string> warnings;
 };
 
-/// Expands a request. Throws InputError, before anything runs, for an unknown method (listing the plugins
-/// that were refused), a setting that does not fit, or two scenarios of one name.
+/// Expands a request. Throws InputError, before anything runs, for an unknown method (listing the
+/// plugins that were refused), a setting that does not fit, or two scenarios of one name.
 [[nodiscard]] Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plugins);
 
 /// "cells" of run.json, and the plan again from a results folder; lists each plugin that it names.
 [[nodiscard]] Json::Value plan_to_json(const Plan& plan);
 [[nodiscard]] Plan plan_from_json(const Json::Value& run, const std::filesystem::path& out);
 
-/// Puts the cells into their order: all of repetition 0, then 1, ..., each shuffled. The same order for the
-/// same seed on every machine.
+/// Puts the cells into their order: all of repetition 0, then 1, ..., each shuffled. The same order
+/// for the same seed on every machine.
 void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed);
 
 }  // namespace lodbench::run

@@ -25,7 +25,8 @@ constexpr const char* kRebuild = "build it again with this lodbench's headers";
 
 void check_header(const PluginDescriptor& descriptor) {
     if (descriptor.abi != kAbi) {
-        refuse(fmt::format("its interface number is {}, expected {}; {}", descriptor.abi, kAbi, kRebuild));
+        refuse(fmt::format("its interface number is {}, expected {}; {}", descriptor.abi, kAbi,
+                           kRebuild));
     }
     if (descriptor.struct_size != sizeof(PluginDescriptor)) {
         refuse(fmt::format("its descriptor has {} bytes, expected {}; {}", descriptor.struct_size,
@@ -80,12 +81,12 @@ std::vector<std::string> split_choices(const char* choices) {
 void check_number(const ParamInfo& param, const std::string& what) {
     if (!std::isfinite(param.minimum) || !std::isfinite(param.maximum) ||
         !std::isfinite(param.default_number) || param.minimum > param.maximum) {
-        refuse(fmt::format("{} has default {} and range {}..{}, expected finite numbers in order", what,
-                           param.default_number, param.minimum, param.maximum));
+        refuse(fmt::format("{} has default {} and range {}..{}, expected finite numbers in order",
+                           what, param.default_number, param.minimum, param.maximum));
     }
     if (param.default_number < param.minimum || param.default_number > param.maximum) {
-        refuse(fmt::format("{} has default {}, outside its range {}..{}", what, param.default_number,
-                           param.minimum, param.maximum));
+        refuse(fmt::format("{} has default {}, outside its range {}..{}", what,
+                           param.default_number, param.minimum, param.maximum));
     }
     if (param.type != ParamType::integer) return;
     for (const double value : {param.default_number, param.minimum, param.maximum}) {
@@ -116,7 +117,8 @@ ParamInfo read_param(const ParamSpec& spec, const std::string& method) {
         case ParamType::real: check_number(info, what); break;
         case ParamType::choice: {
             info.default_choice = line_of_text(spec.default_choice, "the default of " + what);
-            info.choices = split_choices(line_of_text(spec.choices, "the choices of " + what).c_str());
+            info.choices =
+                split_choices(line_of_text(spec.choices, "the choices of " + what).c_str());
             if (std::ranges::find(info.choices, "") != info.choices.end()) {
                 refuse(fmt::format("{} has an empty choice in '{}'", what, spec.choices));
             }
@@ -139,7 +141,8 @@ std::string declared_name(const char* name, const MethodInfo& info, const char* 
         if (param.type == ParamType::integer || param.type == ParamType::real) return name;
         refuse(fmt::format("the {} '{}' of method '{}' is not a number", role, name, info.id));
     }
-    refuse(fmt::format("the {} '{}' of method '{}' is not among its parameters", role, name, info.id));
+    refuse(
+        fmt::format("the {} '{}' of method '{}' is not among its parameters", role, name, info.id));
 }
 
 MethodInfo read_method(const MethodDescriptor& method, std::size_t index) {
@@ -155,8 +158,10 @@ MethodInfo read_method(const MethodDescriptor& method, std::size_t index) {
     info.capabilities = method.capabilities;
     if (method.gl_extensions != nullptr) {
         for (std::size_t i = 0; method.gl_extensions[i] != nullptr; ++i) {
-            if (i == kMaxExtensions) refuse("the list of GL extensions" + of + " has no null at its end");
-            info.gl_extensions.push_back(line_of_text(method.gl_extensions[i], "a GL extension" + of));
+            if (i == kMaxExtensions)
+                refuse("the list of GL extensions" + of + " has no null at its end");
+            info.gl_extensions.push_back(
+                line_of_text(method.gl_extensions[i], "a GL extension" + of));
         }
     }
     if (method.param_count > kMaxParams || (method.param_count > 0 && method.params == nullptr)) {

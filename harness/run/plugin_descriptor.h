@@ -15,8 +15,8 @@ struct DescriptorError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Checks abi, struct_size and abi_tag, in that order, and only then what lies behind them; copies the
-/// methods out. Throws DescriptorError.
+/// Checks abi, struct_size and abi_tag, in that order, and only then what lies behind them; copies
+/// the methods out. Throws DescriptorError.
 [[nodiscard]] std::vector<MethodInfo> read_descriptor(const PluginDescriptor& descriptor,
                                                       const std::filesystem::path& plugin);
 

@@ -26,21 +26,24 @@ PluginLibrary::PluginLibrary(const std::filesystem::path& path)
     handle_ = dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle_ == nullptr) {
         const char* words = dlerror();
-        refuse(path_, fmt::format("the loader says '{}'; build it again against this system's libraries",
-                                  words == nullptr ? "nothing" : words));
+        refuse(path_,
+               fmt::format("the loader says '{}'; build it again against this system's libraries",
+                           words == nullptr ? "nothing" : words));
     }
     try {
         descriptor_ = static_cast<const PluginDescriptor*>(dlsym(handle_, kPluginSymbol));
         if (descriptor_ == nullptr) {
             const char* words = dlerror();
-            refuse(path_, fmt::format("it exports no symbol '{}' (the loader says '{}'); declare its "
-                                      "methods with LODBENCH_PLUGIN",
-                                      kPluginSymbol, words == nullptr ? "nothing" : words));
+            refuse(path_,
+                   fmt::format("it exports no symbol '{}' (the loader says '{}'); declare its "
+                               "methods with LODBENCH_PLUGIN",
+                               kPluginSymbol, words == nullptr ? "nothing" : words));
         }
         loader_log("{}: reading its descriptor", path_.string());
         try {
             for (const MethodInfo& method : read_descriptor(*descriptor_, path_)) {
-                loader_log("{}: method '{}', version {}", path_.string(), method.id, method.version);
+                loader_log("{}: method '{}', version {}", path_.string(), method.id,
+                           method.version);
             }
         } catch (const DescriptorError& error) {
             refuse(path_, error.what());
@@ -71,7 +74,8 @@ std::vector<MethodInfo> PluginLibrary::methods() const {
     return read_descriptor(*descriptor_, path_);
 }
 
-PluginLibrary::MethodPointer PluginLibrary::create(const std::string& id, const Params& params) const {
+PluginLibrary::MethodPointer PluginLibrary::create(const std::string& id,
+                                                   const Params& params) const {
     for (std::size_t i = 0; i < descriptor_->method_count; ++i) {
         const MethodDescriptor& method = descriptor_->methods[i];
         if (id != method.id) continue;

@@ -31,8 +31,8 @@ struct MethodInfo {
     std::filesystem::path plugin;
 };
 
-/// One plugin file as it was found: its methods, or why it cannot be used (path, the loader's own words,
-/// found and expected, remedy).
+/// One plugin file as it was found: its methods, or why it cannot be used (path, the loader's own
+/// words, found and expected, remedy).
 struct PluginListing {
     std::filesystem::path path;
     std::vector<MethodInfo> methods;
@@ -52,8 +52,8 @@ struct PluginListing {
     const std::filesystem::path& plugin,
     std::chrono::milliseconds time_limit = std::chrono::seconds(10));
 
-/// The method with this id. Throws InputError, "WHERE: no method 'ID' was found; known: ...", with the words of
-/// each plugin that was refused.
+/// The method with this id. Throws InputError, "WHERE: no method 'ID' was found; known: ...", with
+/// the words of each plugin that was refused.
 [[nodiscard]] const MethodInfo& find_method(const std::vector<PluginListing>& plugins,
                                             const std::string& id, const std::string& where);
 
@@ -82,8 +82,8 @@ private:
     std::filesystem::path path_;
 };
 
-/// Checks text settings against the specs and fills in defaults. Throws InputError naming `where`, the
-/// parameter, the value and what would be right.
+/// Checks text settings against the specs and fills in defaults. Throws InputError naming `where`,
+/// the parameter, the value and what would be right.
 [[nodiscard]] Params make_params(const MethodInfo& method, const Settings& settings,
                                  const std::string& where);
 

@@ -99,8 +99,8 @@ int tell(const fs::path& plugin, int listing, int output) {
         dup2(output, STDOUT_FILENO);
         dup2(output, STDERR_FILENO);
     }
-    // A constructor that calls exit() would run the exit handlers of libraries whose threads did not come
-    // along into this fork: end before them.
+    // A constructor that calls exit() would run the exit handlers of libraries whose threads did
+    // not come along into this fork: end before them.
     on_exit([](int status, void*) { _exit(status); }, nullptr);
     const rlimit limit{kOutputLimit, kOutputLimit};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -141,7 +141,8 @@ void refuse_duplicates(std::vector<PluginListing>& listings) {
         for (PluginListing* plugin : plugins) {
             const auto other = std::ranges::find_if(plugins, [&](auto* p) { return p != plugin; });
             plugin->refusal = fmt::format(
-                "plugin {} cannot be used: its method id '{}' is also held by {}; remove one of the two",
+                "plugin {} cannot be used: its method id '{}' is also held by {}; remove one of "
+                "the two",
                 plugin->path.string(), id, (*other)->path.string());
             loader_log("{}", plugin->refusal);
         }
@@ -182,14 +183,16 @@ PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time
     while (!child.wait(std::chrono::milliseconds(50))) {
         if (std::chrono::steady_clock::now() < deadline) continue;
         child.kill_group();
-        return refuse(fmt::format("it did not load within {} s{}; a constructor that runs while it is "
-                                  "loaded does not end",
-                                  double(time_limit.count()) / 1000, last_words(output)));
+        return refuse(
+            fmt::format("it did not load within {} s{}; a constructor that runs while it is "
+                        "loaded does not end",
+                        double(time_limit.count()) / 1000, last_words(output)));
     }
     const std::string text = base::read_all(listing);
     if (!child.ending().well() || text.empty()) {
-        return refuse(fmt::format("while it was loaded: {}{}; look at the constructors that run then",
-                                  child.ending().words(), last_words(output)));
+        return refuse(
+            fmt::format("while it was loaded: {}{}; look at the constructors that run then",
+                        child.ending().words(), last_words(output)));
     }
     try {
         const Json::Value json = report::parse_json(text, plugin.string());
@@ -211,13 +214,16 @@ std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
         loader_log("looking into {}", folder.string());
         std::error_code error;
         std::vector<fs::path> files;
-        for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+             entry.increment(error)) {
             if (entry->path().extension() == ".so") files.push_back(entry->path());
         }
         if (error) {
-            listings.push_back({folder, {}, fmt::format("plugin folder {} cannot be read: {}; correct "
-                                                        "--plugin-dir or LODBENCH_PLUGIN_PATH",
-                                                        folder.string(), error.message())});
+            listings.push_back({folder,
+                                {},
+                                fmt::format("plugin folder {} cannot be read: {}; correct "
+                                            "--plugin-dir or LODBENCH_PLUGIN_PATH",
+                                            folder.string(), error.message())});
             continue;
         }
         std::ranges::sort(files);

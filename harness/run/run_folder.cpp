@@ -28,8 +28,9 @@ void make_folder(const fs::path& path) {
     std::error_code error;
     fs::create_directories(path, error);
     if (error) {
-        throw EnvironmentError(fmt::format("cannot make the folder {}: {}; choose another with --out",
-                                           path.string(), error.message()));
+        throw EnvironmentError(
+            fmt::format("cannot make the folder {}: {}; choose another with --out", path.string(),
+                        error.message()));
     }
 }
 
@@ -45,11 +46,14 @@ RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {
     }
     for (int attempt = 0; flock(lock_.number(), LOCK_EX | LOCK_NB) != 0; ++attempt) {
         if (errno != EWOULDBLOCK && errno != EINTR) {
-            throw EnvironmentError(fmt::format("cannot lock {}: {}", file.string(), std::strerror(errno)));
+            throw EnvironmentError(
+                fmt::format("cannot lock {}: {}", file.string(), std::strerror(errno)));
         }
         if (attempt == kLockAttempts) {
-            throw InputError(fmt::format("{}: another run is writing into this folder; wait for it or choose "
-                                         "another with --out", path_.string()));
+            throw InputError(
+                fmt::format("{}: another run is writing into this folder; wait for it or choose "
+                            "another with --out",
+                            path_.string()));
         }
         std::this_thread::sleep_for(kLockPause);
     }
@@ -68,15 +72,18 @@ std::vector<Json::Value> RunFolder::repair() {
         Json::Value cell = report::parse_json(line, where);
         const std::string id = report::get_string(cell, "cell", where);
         if (!ids.insert(id).second) {
-            throw InputError(fmt::format("{}: cell '{}' is there twice; remove one of its lines", where, id));
+            throw InputError(
+                fmt::format("{}: cell '{}' is there twice; remove one of its lines", where, id));
         }
         cells.push_back(std::move(cell));
     }
     std::vector<fs::path> leftovers;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path_)) {
         const fs::path& path = entry.path();
-        const bool temporary = path.extension() == ".tmp" && path.filename().string().starts_with(".");
-        const bool orphan = path.parent_path() == path_ / "frames" && !ids.contains(path.stem().string());
+        const bool temporary =
+            path.extension() == ".tmp" && path.filename().string().starts_with(".");
+        const bool orphan =
+            path.parent_path() == path_ / "frames" && !ids.contains(path.stem().string());
         if (entry.is_regular_file() && (temporary || orphan)) leftovers.push_back(path);
     }
     for (const fs::path& path : leftovers) fs::remove(path);

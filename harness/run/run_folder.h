@@ -10,22 +10,22 @@
 
 #include "base/child_process.h"
 
-
 namespace lodbench::run {
 
-/// Makes the folder and its lock. The lock is inherited by the cells' processes, so that nobody takes the
-/// folder over while a child of a killed run still breathes.
+/// Makes the folder and its lock. The lock is inherited by the cells' processes, so that nobody
+/// takes the folder over while a child of a killed run still breathes.
 class RunFolder {
 public:
-    /// Throws EnvironmentError when the folder cannot be made or written, InputError when another run holds it.
+    /// Throws EnvironmentError when the folder cannot be made or written, InputError when another
+    /// run holds it.
     explicit RunFolder(std::filesystem::path path);
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] bool holds_a_run() const;
 
-    /// The objects of cells.jsonl after a repair: a line that a killed writer left unfinished is dropped, and
-    /// with it temporary files and what belongs to no finished cell. Throws InputError with file and line for
-    /// what is no cell.
+    /// The objects of cells.jsonl after a repair: a line that a killed writer left unfinished is
+    /// dropped, and with it temporary files and what belongs to no finished cell. Throws InputError
+    /// with file and line for what is no cell.
     [[nodiscard]] std::vector<Json::Value> repair();
 
     /// The frames' CSV first, then the cell's line: a cell that has a line is whole.

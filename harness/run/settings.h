@@ -17,7 +17,8 @@ struct Setting {
     std::string name, value;
 };
 
-/// Reads "[METHOD.]NAME=VALUE"; no part may be empty. Throws InputError saying that `form` was expected.
+/// Reads "[METHOD.]NAME=VALUE"; no part may be empty. Throws InputError saying that `form` was
+/// expected.
 [[nodiscard]] Setting parse_setting(std::string_view text, std::string_view form);
 
 }  // namespace lodbench::run

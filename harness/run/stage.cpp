@@ -31,8 +31,8 @@ Stage::Stage(StageSetup setup, VitalSigns& signs)
     params_ = make_params(info_, setup_.settings, "settings of " + setup_.method);
     for (const std::string& extension : info_.gl_extensions) {
         if (!device_->has_extension(extension)) {
-            throw MethodSkipped(fmt::format("method '{}' needs {}, which {} does not have", info_.id,
-                                            extension, device_->info().renderer));
+            throw MethodSkipped(fmt::format("method '{}' needs {}, which {} does not have",
+                                            info_.id, extension, device_->info().renderer));
         }
     }
     frame_block_ = gl::Buffer(*device_, "host: Frame", sizeof(gl::Frame));
@@ -83,7 +83,8 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
         if (!differences.empty()) {
             before->restore();
             throw MethodFailure(fmt::format("{} of plugin {} left GL state changed: {}",
-                                            name_of(call), plugin_name_, fmt::join(differences, "; ")));
+                                            name_of(call), plugin_name_,
+                                            fmt::join(differences, "; ")));
         }
     }
 }
@@ -152,7 +153,8 @@ void Stage::set_pipeline_state() {
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_STENCIL_TEST);
-    // Strips and mapped grids turn their triangles either way round; a terrain is seen from both sides.
+    // Strips and mapped grids turn their triangles either way round; a terrain is seen from both
+    // sides.
     glDisable(GL_CULL_FACE);
     glDisable(GL_RASTERIZER_DISCARD);
     glDisable(GL_PRIMITIVE_RESTART);

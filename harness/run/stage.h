@@ -1,5 +1,6 @@
 #pragma once
-// One method on one terrain in one context: every call that the harness makes of a method goes through here.
+// One method on one terrain in one context: every call that the harness makes of a method goes
+// through here.
 
 #include <cstdint>
 #include <filesystem>
@@ -42,8 +43,8 @@ struct StageSetup {
 
 /// Owns context, device, plugin and method, the two uniform blocks and the picture's framebuffer.
 /// The calls follow `Method`: prepare, upload, resize, then select and draw in any number, release.
-/// Each call of the method that throws, raises a GL error, or (while checking) leaves the pipeline state
-/// changed ends in MethodFailure.
+/// Each call of the method that throws, raises a GL error, or (while checking) leaves the pipeline
+/// state changed ends in MethodFailure.
 class Stage {
 public:
     Stage(StageSetup setup, VitalSigns& signs);
@@ -62,11 +63,11 @@ public:
     [[nodiscard]] Counters counters();
     void release();
 
-    /// Clears the framebuffer and draws the frozen selection from the selected camera. `wireframe` draws
-    /// the triangles' edges over the shaded picture.
+    /// Clears the framebuffer and draws the frozen selection from the selected camera. `wireframe`
+    /// draws the triangles' edges over the shaded picture.
     void draw_picture(bool wireframe = false);
-    /// Prepares the frame (framebuffer, state, clear) and draws through `view`. The timing replay calls it
-    /// so that nothing but clear, two small uploads and the method's draw is in a frame.
+    /// Prepares the frame (framebuffer, state, clear) and draws through `view`. The timing replay
+    /// calls it so that nothing but clear, two small uploads and the method's draw is in a frame.
     void draw(const View& view);
     /// The triangles that the frozen selection sends to the rasteriser.
     [[nodiscard]] measure::CapturedSurface capture();
@@ -82,8 +83,8 @@ public:
     /// Compare the pipeline state around every call of the method (not in the timing replay).
     void check_state(bool on) { check_state_ = on; }
 
-    /// Bytes that the method's own calls allocated on the GPU at their peak (seen after each call) and
-    /// uploaded so far; the harness's framebuffer and uniform blocks are not in them.
+    /// Bytes that the method's own calls allocated on the GPU at their peak (seen after each call)
+    /// and uploaded so far; the harness's framebuffer and uniform blocks are not in them.
     [[nodiscard]] std::uint64_t method_gpu_bytes() const { return std::uint64_t(peak_bytes_); }
     [[nodiscard]] std::uint64_t method_uploaded_bytes() const { return uploaded_bytes_; }
 

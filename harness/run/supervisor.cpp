@@ -31,9 +31,11 @@ constexpr auto kWatchInterval = std::chrono::milliseconds(20);
 class SharedSigns {
 public:
     explicit SharedSigns(int descriptor) {
-        void* page = mmap(nullptr, sizeof(VitalSigns), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+        void* page =
+            mmap(nullptr, sizeof(VitalSigns), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
         if (page == MAP_FAILED) {
-            throw EnvironmentError(fmt::format("cannot map shared memory: {}", std::strerror(errno)));
+            throw EnvironmentError(
+                fmt::format("cannot map shared memory: {}", std::strerror(errno)));
         }
         signs_ = static_cast<VitalSigns*>(page);
     }
@@ -47,8 +49,8 @@ private:
     VitalSigns* signs_;
 };
 
-/// What a child prints, into a file that appears with the first byte and stops growing at its limit. A log
-/// that cannot be written loses its text, not the cell.
+/// What a child prints, into a file that appears with the first byte and stops growing at its
+/// limit. A log that cannot be written loses its text, not the cell.
 class Log {
 public:
     explicit Log(std::filesystem::path path) : path_(std::move(path)) {}
@@ -75,7 +77,8 @@ private:
 
 /// Resident bytes of a process; 0 when it is gone.
 std::uint64_t resident_bytes(pid_t pid) {
-    const base::FileDescriptor file(open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
+    const base::FileDescriptor file(
+        open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
     char text[128] = {};
     if (!file || read(file.number(), text, sizeof text - 1) <= 0) return 0;
     unsigned long long total = 0;
@@ -109,7 +112,8 @@ std::string place(const VitalSigns& signs, const std::string& plugin) {
         case Call::none: return fmt::format("between the calls of plugin {}{}", plugin, when);
         case Call::start: return fmt::format("before the first call of plugin {}", plugin);
         case Call::load_terrain:
-            return fmt::format("while the terrain was loaded, before the first call of plugin {}", plugin);
+            return fmt::format("while the terrain was loaded, before the first call of plugin {}",
+                               plugin);
         case Call::open_plugin: return fmt::format("while plugin {} was opened", plugin);
         case Call::write_results: return fmt::format("after the last call of plugin {}", plugin);
         default: return fmt::format("in {} of plugin {}{}", name_of(call), plugin, when);
@@ -138,7 +142,8 @@ int become_cell(const std::filesystem::path& program, int spec, int signs, int r
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     for (const int descriptor : {spec, signs, result}) make_inheritable(descriptor);
-    const std::string descriptors[] = {std::to_string(spec), std::to_string(signs), std::to_string(result)};
+    const std::string descriptors[] = {std::to_string(spec), std::to_string(signs),
+                                       std::to_string(result)};
     execl(program.c_str(), program.c_str(), "cell", "--spec", descriptors[0].c_str(), "--signs",
           descriptors[1].c_str(), "--result", descriptors[2].c_str(), nullptr);
     fmt::print(stderr, "cannot run {}: {}\n", program.string(), std::strerror(errno));
@@ -147,14 +152,16 @@ int become_cell(const std::filesystem::path& program, int spec, int signs, int r
 
 }  // namespace
 
-CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::filesystem::path& program,
-                    const std::filesystem::path& log_path, const CellProgress& progress) {
+CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
+                    const std::filesystem::path& program, const std::filesystem::path& log_path,
+                    const CellProgress& progress) {
     const base::FileDescriptor spec_file = base::memory_file("lodbench-spec");
     const base::FileDescriptor signs_file = base::memory_file("lodbench-signs");
     const base::FileDescriptor result_file = base::memory_file("lodbench-result");
     if (!base::write_all(spec_file.number(), write_spec(spec)) ||
         ftruncate(signs_file.number(), sizeof(VitalSigns)) != 0) {
-        throw EnvironmentError(fmt::format("cannot share memory with a child: {}", std::strerror(errno)));
+        throw EnvironmentError(
+            fmt::format("cannot share memory with a child: {}", std::strerror(errno)));
     }
     const SharedSigns signs(signs_file.number());
     new (&*signs) VitalSigns;
@@ -183,7 +190,9 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::f
         const auto now = SteadyClock::now();
         const std::uint64_t resident = resident_bytes(child.pid());
         peak = std::max(peak, resident);
-        const auto seconds = [now](auto since) { return std::chrono::duration<double>(now - since).count(); };
+        const auto seconds = [now](auto since) {
+            return std::chrono::duration<double>(now - since).count();
+        };
         const auto kill_for = [&](CellStatus status, const std::string& what) {
             // Where it stood, read before it is gone for good.
             const std::string reason = fmt::format("{} {}", what, place(*signs, plugin));
@@ -202,11 +211,12 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::f
             last_beat = now;
         }
         if (belongs_to_a_frame(signs->call.load()) && seconds(last_beat) > limits.frame_s) {
-            return kill_for(CellStatus::timeout, fmt::format("no sign of life for {} s", limits.frame_s));
+            return kill_for(CellStatus::timeout,
+                            fmt::format("no sign of life for {} s", limits.frame_s));
         }
         if (seconds(start) > limits.cell_s) {
-            return kill_for(CellStatus::timeout, fmt::format("exceeded the cell's time limit of {} s",
-                                                             limits.cell_s));
+            return kill_for(CellStatus::timeout,
+                            fmt::format("exceeded the cell's time limit of {} s", limits.cell_s));
         }
         if (progress) {
             const int total = signs->frames_total.load();
@@ -226,7 +236,9 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits, const std::f
             return ended(CellStatus::failed, error.what(), peak);
         }
         if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
-        if (!ending.well()) result.warnings.push_back(fmt::format("after the result was written: {}", ending.words()));
+        if (!ending.well())
+            result.warnings.push_back(
+                fmt::format("after the result was written: {}", ending.words()));
         return result;
     }
     // A process that ends well without a result was ended by the plugin, not by us.

@@ -11,16 +11,17 @@ namespace lodbench::run {
 
 /// What a cell may use before it is killed.
 struct CellLimits {
-    double cell_s = 600;                          ///< wall time of the whole cell
-    double frame_s = 60;                          ///< without a sign of life while frames are drawn
-    std::uint64_t memory_bytes = 8ULL << 30;      ///< resident
+    double cell_s = 600;                      ///< wall time of the whole cell
+    double frame_s = 60;                      ///< without a sign of life while frames are drawn
+    std::uint64_t memory_bytes = 8ULL << 30;  ///< resident
 };
 
 /// Where a cell stands, for a line of progress.
 using CellProgress = std::function<void(int frames_done, int frames_total)>;
 
-/// Runs `program cell` for the specification and waits. What the child prints goes to `log`, cut after
-/// 1 MiB. Whatever the child does, a result comes back; EnvironmentError only when none could be started.
+/// Runs `program cell` for the specification and waits. What the child prints goes to `log`, cut
+/// after 1 MiB. Whatever the child does, a result comes back; EnvironmentError only when none could
+/// be started.
 [[nodiscard]] CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
                                   const std::filesystem::path& program,
                                   const std::filesystem::path& log, const CellProgress& progress);

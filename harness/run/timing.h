@@ -25,10 +25,10 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// One frame, milliseconds. Where the driver's timer is trusted, `wall_ms` is the time from this frame's start to
-/// the next one's, with at most kFramesInFlight frames under way, and `gpu_ms` comes from timestamps. Where
-/// it is not, every frame ends with glFinish: `wall_ms` is from before selection to the end of its work and
-/// `gpu_ms` from the end of selection to there.
+/// One frame, milliseconds. Where the driver's timer is trusted, `wall_ms` is the time from this
+/// frame's start to the next one's, with at most kFramesInFlight frames under way, and `gpu_ms`
+/// comes from timestamps. Where it is not, every frame ends with glFinish: `wall_ms` is from before
+/// selection to the end of its work and `gpu_ms` from the end of selection to there.
 struct FrameTimes {
     double wall_ms = 0, select_ms = 0, submit_ms = 0;
     double cpu_ms = 0;  ///< CPU time of the process, all threads, over the span of wall_ms
@@ -44,8 +44,8 @@ public:
     void begin_frame();
     void end_select();
     void end_submit();
-    /// Ends the current frame's span here and waits for the GPU: what follows, until the next begin_frame, is in
-    /// no frame.
+    /// Ends the current frame's span here and waits for the GPU: what follows, until the next
+    /// begin_frame, is in no frame.
     void drain();
     /// After the last frame; `frames()` is complete then.
     void finish();

@@ -1,6 +1,6 @@
 #pragma once
-// What a child tells its parent without a system call, and what is left of it when it dies: a page of
-// shared memory that both map.
+// What a child tells its parent without a system call, and what is left of it when it dies: a page
+// of shared memory that both map.
 
 #include <atomic>
 #include <cstdint>
@@ -9,15 +9,31 @@ namespace lodbench::run {
 
 /// The calls that a plugin can die in.
 enum class Call : std::uint32_t {
-    none, start, load_terrain, open_plugin, create, prepare, upload, resize, select, draw, settle,
-    pause_background, resume_background, counters, release, destroy, write_results, count_
+    none,
+    start,
+    load_terrain,
+    open_plugin,
+    create,
+    prepare,
+    upload,
+    resize,
+    select,
+    draw,
+    settle,
+    pause_background,
+    resume_background,
+    counters,
+    release,
+    destroy,
+    write_results,
+    count_
 };
 [[nodiscard]] const char* name_of(Call call);
 
 /// Lives in the shared page. Written by the child, read by the parent.
 struct VitalSigns {
     std::atomic<Call> call{Call::none};
-    std::atomic<std::int32_t> replay{0};        ///< 0 before any, 1 timing, 2 lockstep
+    std::atomic<std::int32_t> replay{0};  ///< 0 before any, 1 timing, 2 lockstep
     std::atomic<std::int32_t> frame{-1};
     std::atomic<std::int32_t> frames_total{0};  ///< of all replays, for the time left
     std::atomic<std::uint64_t> beats{0};        ///< grows with every call and frame: a sign of life

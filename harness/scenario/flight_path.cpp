@@ -252,10 +252,8 @@ std::unique_ptr<FlightPath> make_path(const PathSpec& spec, int frames, double r
         case PathKind::spline:
         case PathKind::terrain_following:
             return std::make_unique<CurvePath>(spec, frames, rate_hz, terrain);
-        case PathKind::orbit:
-            return std::make_unique<OrbitPath>(spec, frames, terrain);
-        case PathKind::recorded:
-            return std::make_unique<RecordedPath>(spec, frames);
+        case PathKind::orbit: return std::make_unique<OrbitPath>(spec, frames, terrain);
+        case PathKind::recorded: return std::make_unique<RecordedPath>(spec, frames);
     }
     throw ContractError("make_path: the kind of path is not one of PathKind");
 }

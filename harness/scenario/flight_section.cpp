@@ -143,18 +143,10 @@ PathSpec read_path(Section& flight, const std::filesystem::path& folder) {
         spec.speed = flight.number("speed", kSpeed).value_or(0);
     }
     switch (spec.kind) {
-        case PathKind::line:
-            read_line(flight, 3, spec);
-            break;
-        case PathKind::spline:
-            read_keyframes(flight, 3, spec);
-            break;
-        case PathKind::orbit:
-            read_orbit(flight, spec);
-            break;
-        case PathKind::terrain_following:
-            read_terrain_following(flight, spec);
-            break;
+        case PathKind::line: read_line(flight, 3, spec); break;
+        case PathKind::spline: read_keyframes(flight, 3, spec); break;
+        case PathKind::orbit: read_orbit(flight, spec); break;
+        case PathKind::terrain_following: read_terrain_following(flight, spec); break;
         case PathKind::recorded: {
             const auto file = flight.text("file");
             if (!file) flight.require("file", "write the CSV file of the recorded flight");

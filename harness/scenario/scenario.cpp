@@ -205,8 +205,8 @@ MethodRequest read_method(Section& section) {
             for (const toml::node& entry : *array) {
                 std::string value = setting_text(section, key.str(), entry);
                 if (std::find(values.begin(), values.end(), value) != values.end()) {
-                    section.refuse(key.str(),
-                                   fmt::format("{} is there twice; remove one", base::printable(value)));
+                    section.refuse(key.str(), fmt::format("{} is there twice; remove one",
+                                                          base::printable(value)));
                 }
                 values.push_back(std::move(value));
             }
@@ -257,7 +257,8 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
 
 Scenario load_scenario(const std::filesystem::path& file) {
     const std::string text = terrain::read_toml_text(file);
-    // What ends a process cannot be caught: tried in a child first. A refusal is met again below, in words.
+    // What ends a process cannot be caught: tried in a child first. A refusal is met again below,
+    // in words.
     const base::Answer rehearsal = base::run_isolated(kRehearsalSeconds, [&] {
         (void)parse_scenario(text, file);
         return std::string();

@@ -254,9 +254,10 @@ void Section::refuse_unknown() const {
         if (first == nullptr || key.source().begin < first->source().begin) first = &key;
     }
     if (first == nullptr) return;
-    throw InputError(fmt::format(
-        "{}: {}{}{} is not a key of a scenario; {}", terrain::toml_place(*first, file_), title_,
-        title_.empty() ? "" : " ", base::printable(first->str()), known_names(first->str(), asked_)));
+    throw InputError(fmt::format("{}: {}{}{} is not a key of a scenario; {}",
+                                 terrain::toml_place(*first, file_), title_,
+                                 title_.empty() ? "" : " ", base::printable(first->str()),
+                                 known_names(first->str(), asked_)));
 }
 
 }  // namespace lodbench::scenario

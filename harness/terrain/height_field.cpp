@@ -30,22 +30,24 @@ HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
     : heights_(std::move(heights)) {
     info_ = std::move(info);
     if (info_.rows < 2 || info_.columns < 2) {
-        throw InputError(
-            fmt::format("terrain '{}': {} rows x {} columns make no surface; at least 2 x 2 samples "
-                        "are needed",
-                        info_.name, info_.rows, info_.columns));
+        throw InputError(fmt::format(
+            "terrain '{}': {} rows x {} columns make no surface; at least 2 x 2 samples "
+            "are needed",
+            info_.name, info_.rows, info_.columns));
     }
     if (!positive(info_.spacing.x) || !positive(info_.spacing.y)) {
-        throw InputError(fmt::format("terrain '{}': spacing of {} x {} m; both must be positive and finite",
-                                     info_.name, info_.spacing.x, info_.spacing.y));
+        throw InputError(
+            fmt::format("terrain '{}': spacing of {} x {} m; both must be positive and finite",
+                        info_.name, info_.spacing.x, info_.spacing.y));
     }
     if (!std::isfinite(info_.origin.x) || !std::isfinite(info_.origin.y)) {
-        throw InputError(fmt::format("terrain '{}': origin ({}, {}); both must be finite", info_.name,
-                                     info_.origin.x, info_.origin.y));
+        throw InputError(fmt::format("terrain '{}': origin ({}, {}); both must be finite",
+                                     info_.name, info_.origin.x, info_.origin.y));
     }
     if (heights_.size() != std::size_t(info_.rows) * std::size_t(info_.columns)) {
-        throw ContractError(fmt::format("HeightField: expected {} rows x {} columns, found {} heights",
-                                        info_.rows, info_.columns, heights_.size()));
+        throw ContractError(
+            fmt::format("HeightField: expected {} rows x {} columns, found {} heights", info_.rows,
+                        info_.columns, heights_.size()));
     }
     const auto bad = std::find_if(heights_.begin(), heights_.end(),
                                   [](float height) { return !std::isfinite(height); });
@@ -64,8 +66,8 @@ HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
 
 void HeightField::copy_samples(const SampleRect& rect, std::span<float> heights) const {
     for (int row = 0; row < rect.rows; ++row) {
-        const auto source = heights_.begin() +
-                            std::ptrdiff_t(rect.row + row) * info_.columns + rect.column;
+        const auto source =
+            heights_.begin() + std::ptrdiff_t(rect.row + row) * info_.columns + rect.column;
         std::copy_n(source, rect.columns, heights.begin() + std::ptrdiff_t(row) * rect.columns);
     }
 }

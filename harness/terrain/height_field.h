@@ -18,10 +18,10 @@ namespace lodbench::terrain {
 /// over little-endian words of 32 bits: rows, columns, then the bits of every height, row by row.
 class HeightField final : public Terrain {
 public:
-    /// `info` needs name, rows, columns, spacing, origin, void_count; the height range and the checksum are
-    /// computed. Throws InputError for a grid under 2 x 2, a spacing that is not positive and finite, or a
-    /// height that is not finite (naming row, column and value); ContractError where the number of heights
-    /// is not rows * columns.
+    /// `info` needs name, rows, columns, spacing, origin, void_count; the height range and the
+    /// checksum are computed. Throws InputError for a grid under 2 x 2, a spacing that is not
+    /// positive and finite, or a height that is not finite (naming row, column and value);
+    /// ContractError where the number of heights is not rows * columns.
     HeightField(TerrainInfo info, std::vector<float> heights);
     [[nodiscard]] std::span<const float> samples() const { return heights_; }
 

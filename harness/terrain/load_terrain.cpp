@@ -32,22 +32,22 @@ std::optional<std::int64_t> available_memory() {
 void check_size(const std::string& what, std::int64_t rows, std::int64_t columns) {
     if (rows < 2 || columns < 2) {
         throw InputError(fmt::format(
-            "{}: {} rows x {} columns make no surface; at least 2 x 2 samples are needed", what, rows,
-            columns));
+            "{}: {} rows x {} columns make no surface; at least 2 x 2 samples are needed", what,
+            rows, columns));
     }
     // Divided, not multiplied: both may be anything.
     if (rows > kMaxSamples / columns || rows > std::numeric_limits<int>::max() ||
         columns > std::numeric_limits<int>::max()) {
-        throw InputError(
-            fmt::format("{}: {} rows x {} columns are more than the {} samples that are read; crop or "
-                        "thin it",
-                        what, rows, columns, kMaxSamples));
+        throw InputError(fmt::format(
+            "{}: {} rows x {} columns are more than the {} samples that are read; crop or "
+            "thin it",
+            what, rows, columns, kMaxSamples));
     }
     const std::int64_t bytes = rows * columns * std::int64_t(sizeof(float));
     if (const auto free = available_memory(); free && bytes > *free) {
         throw InputError(fmt::format(
-            "{}: {} rows x {} columns need {} MiB, {} MiB of memory are free; crop or thin it", what,
-            rows, columns, bytes >> 20, *free >> 20));
+            "{}: {} rows x {} columns need {} MiB, {} MiB of memory are free; crop or thin it",
+            what, rows, columns, bytes >> 20, *free >> 20));
     }
 }
 
@@ -105,10 +105,11 @@ public:
             }
             heights[column] = float(sample * scale_ + offset_);
             if (!std::isfinite(heights[column])) {
-                throw InputError(fmt::format(
-                    "{}: the height at row {}, column {} is {}; every height must be finite, or its "
-                    "value given as no-data",
-                    file_, row, column, sample * scale_ + offset_));
+                throw InputError(
+                    fmt::format("{}: the height at row {}, column {} is {}; every height must be "
+                                "finite, or its "
+                                "value given as no-data",
+                                file_, row, column, sample * scale_ + offset_));
             }
         }
     }
@@ -144,8 +145,8 @@ LoadedTerrain load_raster(const TerrainSource& source) {
     const auto spacing_y = first_of(source.spacing_y, sidecar.spacing_y);
     if (!description.spacing && !(spacing_x && spacing_y)) {
         if (!description.spacing_hint.empty()) {
-            throw InputError(fmt::format("{}: {}; give the spacing in metres",
-                                         source.file.string(), description.spacing_hint));
+            throw InputError(fmt::format("{}: {}; give the spacing in metres", source.file.string(),
+                                         description.spacing_hint));
         }
         loaded.spacing_assumed = true;
     }
@@ -175,11 +176,13 @@ LoadedTerrain load_raster(const TerrainSource& source) {
 
 LoadedTerrain load_synthetic(const TerrainSource& source) {
     if (source.vertical_scale || source.vertical_offset || source.no_data) {
-        throw InputError(fmt::format("synthetic terrain '{}': vertical scale, vertical offset and "
-                                     "no-data belong to files; use the form's own parameters",
-                                     source.synthetic));
+        throw InputError(
+            fmt::format("synthetic terrain '{}': vertical scale, vertical offset and "
+                        "no-data belong to files; use the form's own parameters",
+                        source.synthetic));
     }
-    check_size(fmt::format("synthetic terrain '{}'", source.synthetic), source.rows, source.columns);
+    check_size(fmt::format("synthetic terrain '{}'", source.synthetic), source.rows,
+               source.columns);
     TerrainInfo info;
     info.name = source.synthetic;
     info.rows = source.rows;

@@ -57,7 +57,8 @@ public:
             crc_.begin();
             const std::string type(take(4));
             if (first) {
-                if (type != "IHDR" || length != 13) refuse("is damaged: its header chunk is missing");
+                if (type != "IHDR" || length != 13)
+                    refuse("is damaged: its header chunk is missing");
                 const std::string_view data = take(13);
                 header = {big_endian(data), big_endian(data.substr(4)), data[8]};
                 if (header.width == 0 || header.height == 0 || header.width > 0x7FFFFFFFU ||
@@ -72,8 +73,9 @@ public:
             }
             const std::uint32_t computed = crc_.value();
             if (big_endian(take(4)) != computed) {
-                refuse(fmt::format("is damaged: a chunk before byte {} has another checksum than it says",
-                                   std::int64_t(stream_.tellg())));
+                refuse(fmt::format(
+                    "is damaged: a chunk before byte {} has another checksum than it says",
+                    std::int64_t(stream_.tellg())));
             }
             if (type == "IEND") return header;
         }

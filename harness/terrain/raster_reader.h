@@ -23,8 +23,9 @@ struct RasterDescription {
     double vertical_offset = 0;         ///< metres, added after scaling
     std::optional<double> no_data;      ///< in units of the file; may be NaN
     bool float32 = false;               ///< no_data is compared in float, as the samples are held
-    std::string spacing_hint;           ///< why the spacing is empty though the file has one; may be empty
-    std::string unit_hint;  ///< why the vertical scale must be given; empty where the file's is known
+    std::string spacing_hint;  ///< why the spacing is empty though the file has one; may be empty
+    std::string
+        unit_hint;  ///< why the vertical scale must be given; empty where the file's is known
 };
 
 /// An open raster. Rows come in the order north to south; each is asked for once, in order.
@@ -37,21 +38,23 @@ public:
 
     [[nodiscard]] const RasterDescription& description() const { return description_; }
 
-    /// The numbers of one row as the file holds them, never normalised; double holds every type up to 32
-    /// bits exactly. `values` has `columns` elements. Throws InputError where the file cannot be read.
+    /// The numbers of one row as the file holds them, never normalised; double holds every type up
+    /// to 32 bits exactly. `values` has `columns` elements. Throws InputError where the file cannot
+    /// be read.
     virtual void read_row(int row, std::span<double> values) = 0;
 
 protected:
     RasterDescription description_;
 };
 
-/// Elevation models. Degrees become metres at the centre latitude phi, on the file's ellipsoid (WGS 84
-/// where it names none: a = 6378137 m, f = 1 / 298.257223563), with e^2 = f (2 - f), per radian:
+/// Elevation models. Degrees become metres at the centre latitude phi, on the file's ellipsoid (WGS
+/// 84 where it names none: a = 6378137 m, f = 1 / 298.257223563), with e^2 = f (2 - f), per radian:
 ///     east   a cos(phi) / (1 - e^2 sin^2 phi)^(1/2)
 ///     north  a (1 - e^2) / (1 - e^2 sin^2 phi)^(3/2)
-/// and the origin is longitude and latitude of the south-west sample times these. Projected coordinates
-/// are multiplied by the length of their unit. A sample stands at the centre of its pixel. Rotated
-/// geotransforms are refused, south-up rasters flipped. GDAL is loaded at the first call. Throws InputError.
+/// and the origin is longitude and latitude of the south-west sample times these. Projected
+/// coordinates are multiplied by the length of their unit. A sample stands at the centre of its
+/// pixel. Rotated geotransforms are refused, south-up rasters flipped. GDAL is loaded at the first
+/// call. Throws InputError.
 [[nodiscard]] std::unique_ptr<RasterReader> open_with_gdal(const std::filesystem::path& file);
 
 /// Images of one channel. OpenImageIO is loaded at the first call. Throws InputError.
@@ -61,16 +64,16 @@ protected:
 [[nodiscard]] std::unique_ptr<RasterReader> open_raw(const std::filesystem::path& file,
                                                      const Sidecar& sidecar);
 
-/// PGM, binary (P5), any maximal value: OpenImageIO stretches a maximum that is not 255 or 65535, so this
-/// one is read here. Throws InputError.
+/// PGM, binary (P5), any maximal value: OpenImageIO stretches a maximum that is not 255 or 65535,
+/// so this one is read here. Throws InputError.
 [[nodiscard]] std::unique_ptr<RasterReader> open_pgm(const std::filesystem::path& file);
 
 /// Chooses the reader by the rule that `raster_route` states.
 [[nodiscard]] std::unique_ptr<RasterReader> open_raster(const std::filesystem::path& file,
                                                         const Sidecar& sidecar);
 
-/// Throws InputError for a grid that is too small (under 2 x 2), or larger than 2^31 samples or than the
-/// memory that is free. Called before anything of that size is allocated.
+/// Throws InputError for a grid that is too small (under 2 x 2), or larger than 2^31 samples or
+/// than the memory that is free. Called before anything of that size is allocated.
 void check_raster_size(const std::filesystem::path& file, std::int64_t rows, std::int64_t columns);
 
 }  // namespace lodbench::terrain

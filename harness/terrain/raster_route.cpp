@@ -15,13 +15,16 @@
 namespace lodbench::terrain {
 namespace {
 
-/// The tags of a TIFF's first directory (TIFF 6.0 section 2; BigTIFF). Both libraries pass over a tag whose
-/// data lies beyond the end of a truncated file, and with it over the georeference, so that is refused
-/// here. What cannot be followed otherwise counts as no tag: the library that gets the file says why.
+/// The tags of a TIFF's first directory (TIFF 6.0 section 2; BigTIFF). Both libraries pass over a
+/// tag whose data lies beyond the end of a truncated file, and with it over the georeference, so
+/// that is refused here. What cannot be followed otherwise counts as no tag: the library that gets
+/// the file says why.
 class TiffTags {
 public:
     explicit TiffTags(const std::filesystem::path& file)
-        : file_(file), stream_(file, std::ios::binary), file_bytes_(std::filesystem::file_size(file)) {}
+        : file_(file),
+          stream_(file, std::ios::binary),
+          file_bytes_(std::filesystem::file_size(file)) {}
 
     bool georeferenced() {
         std::array<char, 2> order{};
@@ -55,9 +58,10 @@ private:
                                                            34735, 42112, 42113};
 
     [[noreturn]] void refuse_truncated(const std::string& what) const {
-        throw InputError(fmt::format("{}: {} lies beyond its end, at byte {}; it is truncated, fetch it "
-                                     "anew",
-                                     file_.string(), what, file_bytes_));
+        throw InputError(
+            fmt::format("{}: {} lies beyond its end, at byte {}; it is truncated, fetch it "
+                        "anew",
+                        file_.string(), what, file_bytes_));
     }
 
     /// Bytes of one value of a TIFF type; 1 for those unknown.
@@ -103,7 +107,8 @@ RasterRoute raster_route(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return char(std::tolower(c)); });
-    if (one_of(extension, {".hgt", ".asc", ".dem", ".dt0", ".dt1", ".dt2", ".img", ".bil", ".flt"})) {
+    if (one_of(extension,
+               {".hgt", ".asc", ".dem", ".dt0", ".dt1", ".dt2", ".img", ".bil", ".flt"})) {
         return RasterRoute::gdal;
     }
     if (one_of(extension, {".tif", ".tiff"})) {
@@ -112,10 +117,11 @@ RasterRoute raster_route(const std::filesystem::path& file) {
     if (one_of(extension, {".png", ".exr"})) return RasterRoute::oiio;
     if (extension == ".pgm") return RasterRoute::pgm;
     if (one_of(extension, {".raw", ".r16", ".bin"})) return RasterRoute::raw;
-    throw InputError(fmt::format(
-        "{}: unknown extension '{}'; known: hgt, asc, dem, dt0, dt1, dt2, img, bil, flt, tif, tiff, "
-        "png, exr, pgm, raw, r16, bin",
-        file.string(), extension));
+    throw InputError(
+        fmt::format("{}: unknown extension '{}'; known: hgt, asc, dem, dt0, dt1, dt2, img, bil, "
+                    "flt, tif, tiff, "
+                    "png, exr, pgm, raw, r16, bin",
+                    file.string(), extension));
 }
 
 std::unique_ptr<RasterReader> open_raster(const std::filesystem::path& file,

@@ -9,7 +9,8 @@ enum class RasterRoute { gdal, oiio, raw, pgm };
 
 /// The rule, by the extension in lower case:
 /// - hgt, asc, dem, dt0, dt1, dt2, img, bil, flt: GDAL;
-/// - tif, tiff: GDAL where the TIFF carries a tag of GeoTIFF or GDAL (33550, 33922, 34264, 34735, 42112,
+/// - tif, tiff: GDAL where the TIFF carries a tag of GeoTIFF or GDAL (33550, 33922, 34264, 34735,
+/// 42112,
 ///   42113), else OpenImageIO;
 /// - png, exr: OpenImageIO;
 /// - pgm: read here;

@@ -30,7 +30,9 @@ class PackedReader final : public RasterReader {
 public:
     PackedReader(const std::filesystem::path& file, RasterDescription description,
                  Encoding encoding, bool big_endian, std::uint64_t offset)
-        : file_(file), stream_(file, std::ios::binary), encoding_(encoding),
+        : file_(file),
+          stream_(file, std::ios::binary),
+          encoding_(encoding),
           big_endian_(big_endian) {
         description_ = std::move(description);
         check_raster_size(file, description_.rows, description_.columns);
@@ -40,7 +42,8 @@ public:
         const std::uint64_t found = std::filesystem::file_size(file);
         if (found != expected) {
             throw InputError(fmt::format(
-                "{}: {} bytes, but {} rows x {} columns of {} bytes{} make {}; the file is {} or its "
+                "{}: {} bytes, but {} rows x {} columns of {} bytes{} make {}; the file is {} or "
+                "its "
                 "size is given wrongly",
                 file.string(), found, description_.rows, description_.columns, bytes_of(encoding),
                 offset > 0 ? fmt::format(" after a header of {}", offset) : "", expected,
@@ -80,8 +83,8 @@ private:
     std::vector<std::uint8_t> bytes_;
 };
 
-/// The header of a PGM: "P5", width, height, maximal value, apart by white space and comments, then one
-/// byte of white space.
+/// The header of a PGM: "P5", width, height, maximal value, apart by white space and comments, then
+/// one byte of white space.
 class PgmHeader {
 public:
     explicit PgmHeader(const std::filesystem::path& file)
@@ -89,16 +92,16 @@ public:
         char magic[2] = {};
         stream_.read(magic, 2);
         if (!stream_ || magic[0] != 'P' || magic[1] != '5') {
-            throw InputError(fmt::format(
-                "{}: not a binary PGM (it does not begin with P5); convert it to one",
-                file.string()));
+            throw InputError(
+                fmt::format("{}: not a binary PGM (it does not begin with P5); convert it to one",
+                            file.string()));
         }
         columns = number("width");
         rows = number("height");
         maximum = number("maximal value");
         if (maximum < 1 || maximum > 65535) {
-            throw InputError(fmt::format("{}: maximal value {}; a PGM has 1 to 65535",
-                                         file.string(), maximum));
+            throw InputError(
+                fmt::format("{}: maximal value {}; a PGM has 1 to 65535", file.string(), maximum));
         }
         offset = std::uint64_t(stream_.tellg()) + 1;
     }
@@ -139,15 +142,16 @@ private:
 std::unique_ptr<RasterReader> open_raw(const std::filesystem::path& file, const Sidecar& sidecar) {
     const std::filesystem::path toml = sidecar_path(file);
     if (sidecar.file.empty()) {
-        throw InputError(fmt::format(
-            "{}: a raw file needs {} beside it, with rows, columns, type and endian", file.string(),
-            toml.string()));
+        throw InputError(
+            fmt::format("{}: a raw file needs {} beside it, with rows, columns, type and endian",
+                        file.string(), toml.string()));
     }
     const auto need = [&toml](bool given, const char* key) {
         if (!given) {
-            throw InputError(fmt::format("{}: {} is missing; a raw file needs rows, columns, type "
-                                         "(int16, uint16, float32) and endian (little, big)",
-                                         toml.string(), key));
+            throw InputError(
+                fmt::format("{}: {} is missing; a raw file needs rows, columns, type "
+                            "(int16, uint16, float32) and endian (little, big)",
+                            toml.string(), key));
         }
     };
     need(sidecar.rows.has_value(), "rows");
@@ -176,7 +180,8 @@ std::unique_ptr<RasterReader> open_pgm(const std::filesystem::path& file) {
     description.rows = int(header.rows);
     description.columns = int(header.columns);
     const bool wide = header.maximum > 255;
-    description.kind = fmt::format("PGM, {}, maximum {}", wide ? "uint16" : "uint8", header.maximum);
+    description.kind =
+        fmt::format("PGM, {}, maximum {}", wide ? "uint16" : "uint8", header.maximum);
     return std::make_unique<PackedReader>(
         file, description, wide ? Encoding::uint16 : Encoding::uint8, true, header.offset);
 }

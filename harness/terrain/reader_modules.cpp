@@ -1,4 +1,5 @@
-// Loads the reader modules: from readers/ beside the build tree's bin/, or from the installed folder.
+// Loads the reader modules: from readers/ beside the build tree's bin/, or from the installed
+// folder.
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -17,7 +18,8 @@ namespace {
 using OpenRaster = RasterReader* (*)(const fs::path&);
 
 /// The module stays loaded: neither library can be unloaded and loaded again safely.
-OpenRaster load_module(const fs::path& file, const char* name, const char* what, const char* option) {
+OpenRaster load_module(const fs::path& file, const char* name, const char* what,
+                       const char* option) {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     const fs::path base = program.parent_path().parent_path();

@@ -23,7 +23,8 @@ const std::vector<SyntheticForm>& forms() {
           {"slope_y", "0.05", "metres up per metre north"}}},
         {"sphere-cap",
          "the top of a sphere over the centre of the extent",
-         {{"radius", "longer side of the extent", "of the sphere, metres; at least half the diagonal"},
+         {{"radius", "longer side of the extent",
+           "of the sphere, metres; at least half the diagonal"},
           {"base", "0", "height of the four corners, metres"}}},
         {"bump",
          "a plane with one raised sample",
@@ -124,7 +125,8 @@ HeightFunction ramp(const Shape& shape, const TerrainInfo& info) {
     };
 }
 
-// z = base + sqrt(R^2 - d^2) - sqrt(R^2 - D^2), with d the distance from the centre, D that of a corner.
+// z = base + sqrt(R^2 - d^2) - sqrt(R^2 - D^2), with d the distance from the centre, D that of a
+// corner.
 HeightFunction sphere_cap(const Shape& shape, const TerrainInfo& info) {
     const glm::dvec2 extent = info.extent_max() - info.extent_min();
     const glm::dvec2 centre = extent * 0.5;
@@ -158,8 +160,8 @@ HeightFunction step(const Shape& shape, const TerrainInfo& info) {
                int, int column) { return column >= first ? base + height : base; };
 }
 
-/// Unit vectors in uniform directions: hashed points of the square, kept where they fall inside the unit
-/// circle, made unit length. No sine is needed.
+/// Unit vectors in uniform directions: hashed points of the square, kept where they fall inside the
+/// unit circle, made unit length. No sine is needed.
 std::vector<glm::dvec2> make_gradients() {
     constexpr std::size_t kCount = 256;
     std::vector<glm::dvec2> gradients;
@@ -176,13 +178,15 @@ std::vector<glm::dvec2> make_gradients() {
     return gradients;
 }
 
-/// Perlin's gradient noise (1985, with the quintic of 2002) on the integer lattice, moved by a hashed
-/// fraction of a cell: it is zero at every node, and octaves that share nodes would all peak there.
+/// Perlin's gradient noise (1985, with the quintic of 2002) on the integer lattice, moved by a
+/// hashed fraction of a cell: it is zero at every node, and octaves that share nodes would all peak
+/// there.
 class GradientNoise {
 public:
     explicit GradientNoise(std::uint64_t seed)
         : seed_(base::mix64(seed)),
-          shift_(double(base::mix64(seed_ + 1) >> 32) * 0x1p-32, double(base::mix64(seed_ + 2) >> 32) * 0x1p-32) {}
+          shift_(double(base::mix64(seed_ + 1) >> 32) * 0x1p-32,
+                 double(base::mix64(seed_ + 2) >> 32) * 0x1p-32) {}
 
     /// In [-sqrt(1/2), sqrt(1/2)].
     [[nodiscard]] double at(glm::dvec2 place, const std::vector<glm::dvec2>& gradients) const {
@@ -195,7 +199,8 @@ public:
             return g.x * (f.x - east) + g.y * (f.y - north);
         };
         const double u = fade(f.x);
-        return lerp(lerp(slope(0, 0), slope(1, 0), u), lerp(slope(0, 1), slope(1, 1), u), fade(f.y));
+        return lerp(lerp(slope(0, 0), slope(1, 0), u), lerp(slope(0, 1), slope(1, 1), u),
+                    fade(f.y));
     }
 
 private:
@@ -204,23 +209,26 @@ private:
 
     [[nodiscard]] std::size_t index(std::int64_t column, std::int64_t row) const {
         return base::mix64(seed_ ^ (std::uint64_t(column) * base::kGolden +
-                            std::uint64_t(row) * 0xc2b2ae3d27d4eb4fULL)) >> 56;
+                                    std::uint64_t(row) * 0xc2b2ae3d27d4eb4fULL)) >>
+               56;
     }
     std::uint64_t seed_;
     glm::dvec2 shift_;
 };
 
 // F. K. Musgrave, "RidgedMultifractal", in Ebert et al., Texturing and Modeling: octave i adds
-// persistence^i * weight * (1 - |noise|)^2, where weight = clamp(gain * the octave before, 0, 1). Departs
-// from it in that amplitudes fall by multiplication (H = -log2 persistence) and that the sum is scaled to
-// lie in 0..1.
+// persistence^i * weight * (1 - |noise|)^2, where weight = clamp(gain * the octave before, 0, 1).
+// Departs from it in that amplitudes fall by multiplication (H = -log2 persistence) and that the
+// sum is scaled to lie in 0..1.
 HeightFunction ridged(const Shape& shape, const TerrainInfo& info, std::uint64_t seed) {
     const glm::dvec2 extent = info.extent_max() - info.extent_min();
     const double longer = std::max(extent.x, extent.y);
     const double base = shape.real("base", 0);
     const double height = shape.real("height", 2000);
-    // The last octave's lattice coordinates stay far under 2^53, where floor and the differences are exact.
-    const double wavelength = shape.real("wavelength", longer * 0.25, longer * 0x1p-20, longer * 0x1p20);
+    // The last octave's lattice coordinates stay far under 2^53, where floor and the differences
+    // are exact.
+    const double wavelength =
+        shape.real("wavelength", longer * 0.25, longer * 0x1p-20, longer * 0x1p20);
     const int octaves = shape.integer("octaves", 10, 1, 24);
     const double persistence = shape.real("persistence", 0.5, 0, 1);
     const double gain = shape.real("gain", 2, 0, 10);

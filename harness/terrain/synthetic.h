@@ -28,10 +28,13 @@ struct SyntheticForm {
 /// Metres between samples where the source gives none.
 inline constexpr double kSyntheticSpacing = 10;
 
-/// Heights of `source.synthetic` over the grid of `info` (rows, columns, spacing), row by row, row 0 north.
-/// The same bits on every machine: integer hashing and the operations that IEEE 754 rounds exactly
+/// Heights of `source.synthetic` over the grid of `info` (rows, columns, spacing), row by row, row
+/// 0 north. The same bits on every machine: integer hashing and the operations that IEEE 754 rounds
+/// exactly
 /// (+ - * / sqrt floor) only, no contraction, no sum whose order depends on threads.
-/// Throws InputError for an unknown form or shape parameter (listing the known ones) or a bad value.
-[[nodiscard]] std::vector<float> make_synthetic(const TerrainSource& source, const TerrainInfo& info);
+/// Throws InputError for an unknown form or shape parameter (listing the known ones) or a bad
+/// value.
+[[nodiscard]] std::vector<float> make_synthetic(const TerrainSource& source,
+                                                const TerrainInfo& info);
 
 }  // namespace lodbench::terrain

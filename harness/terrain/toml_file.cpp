@@ -10,8 +10,9 @@
 namespace lodbench::terrain {
 namespace {
 
-/// Walks over the text once, keeping apart strings, comments and the rest, and refuses what is longer or
-/// deeper than the caps. It knows no more of TOML than that: what is wrong otherwise, the parser says.
+/// Walks over the text once, keeping apart strings, comments and the rest, and refuses what is
+/// longer or deeper than the caps. It knows no more of TOML than that: what is wrong otherwise, the
+/// parser says.
 class Guard {
 public:
     Guard(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file) {}
@@ -34,8 +35,9 @@ private:
         for (std::size_t begin = 0; begin <= text_.size(); ++line_) {
             const std::size_t end = std::min(text_.find('\n', begin), text_.size());
             if (end - begin > kTomlMaxLineBytes) {
-                refuse(fmt::format("a line of {} bytes, the longest that is read has {}; break it up",
-                                   end - begin, kTomlMaxLineBytes));
+                refuse(
+                    fmt::format("a line of {} bytes, the longest that is read has {}; break it up",
+                                end - begin, kTomlMaxLineBytes));
             }
             begin = end + 1;
         }
@@ -48,13 +50,9 @@ private:
                 ++line_;
                 key_dots_ = 0;
                 break;
-            case '#':
-                at_ = std::min(text_.find('\n', at_), text_.size());
-                return;
+            case '#': at_ = std::min(text_.find('\n', at_), text_.size()); return;
             case '"':
-            case '\'':
-                skip_string(c);
-                return;
+            case '\'': skip_string(c); return;
             case '[':
             case '{':
                 key_dots_ = 0;
@@ -68,16 +66,13 @@ private:
                 depth_ = std::max(depth_ - 1, 0);
                 break;
             case '=':
-            case ',':
-                key_dots_ = 0;
-                break;
+            case ',': key_dots_ = 0; break;
             case '.':
                 if (++key_dots_ >= kTomlMaxDepth) {
                     refuse(fmt::format("a dotted key of more than {} parts", kTomlMaxDepth));
                 }
                 break;
-            default:
-                break;
+            default: break;
         }
         ++at_;
     }
@@ -85,8 +80,8 @@ private:
     void skip_string(char quote) {
         const std::string three(3, quote);
         const bool multi_line = text_.substr(at_, 3) == three;
-        const std::string_view end = multi_line ? std::string_view(three)
-                                                : std::string_view(three).substr(0, 1);
+        const std::string_view end =
+            multi_line ? std::string_view(three) : std::string_view(three).substr(0, 1);
         at_ += end.size();
         while (at_ < text_.size()) {
             if (text_.substr(at_, end.size()) == end) {

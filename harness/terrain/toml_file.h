@@ -1,23 +1,25 @@
 #pragma once
-// TOML text that a stranger wrote, looked over before the parser sees it. Include from .cpp files only:
-// toml++ is heavy.
+// TOML text that a stranger wrote, looked over before the parser sees it. Include from .cpp files
+// only: toml++ is heavy.
 
+#include <toml++/toml.h>
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 
 namespace lodbench::terrain {
 
-// What the parser is never shown: toml++ 3.3 recurses once per bracket and once per part of a dotted key,
-// and takes quadratic time on long keys.
+// What the parser is never shown: toml++ 3.3 recurses once per bracket and once per part of a
+// dotted key, and takes quadratic time on long keys.
 inline constexpr std::size_t kTomlMaxBytes = std::size_t(1) << 20;
 inline constexpr std::size_t kTomlMaxLineBytes = 4096;
-inline constexpr int kTomlMaxDepth = 64;  ///< open brackets at any place, and parts of one dotted key
+inline constexpr int kTomlMaxDepth =
+    64;  ///< open brackets at any place, and parts of one dotted key
 
-/// Parses `text`; `file` is what messages call it. Throws InputError, "FILE:LINE: what is wrong; remedy",
-/// for text beyond the caps above and for what is not TOML. Nodes remember their lines, see `toml_place`.
+/// Parses `text`; `file` is what messages call it. Throws InputError, "FILE:LINE: what is wrong;
+/// remedy", for text beyond the caps above and for what is not TOML. Nodes remember their lines,
+/// see `toml_place`.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::filesystem::path& file);
 
 /// Reads a whole file of text: at most kTomlMaxBytes, else InputError "FILE: ...".

@@ -16,15 +16,21 @@ struct Mean {
     }
 };
 
-/// Walks down the rows in place. What was valid before the pass is kept apart: `row_before_` is a copy of
-/// the row, `last_valid_` and `next_valid_` hold the neighbours above and below, so that no sample that
-/// this pass filled is taken for a valid one. Each pass costs a constant number of looks at each sample.
+/// Walks down the rows in place. What was valid before the pass is kept apart: `row_before_` is a
+/// copy of the row, `last_valid_` and `next_valid_` hold the neighbours above and below, so that no
+/// sample that this pass filled is taken for a valid one. Each pass costs a constant number of
+/// looks at each sample.
 class Pass {
 public:
     Pass(std::span<float> heights, int rows, int columns, glm::dvec2 spacing)
-        : heights_(heights), rows_(rows), columns_(columns), spacing_(spacing),
-          above_(std::size_t(columns)), next_valid_(std::size_t(columns), 0),
-          row_before_(std::size_t(columns)), west_(std::size_t(columns)) {}
+        : heights_(heights),
+          rows_(rows),
+          columns_(columns),
+          spacing_(spacing),
+          above_(std::size_t(columns)),
+          next_valid_(std::size_t(columns), 0),
+          row_before_(std::size_t(columns)),
+          west_(std::size_t(columns)) {}
 
     /// Returns the number of voids found; `left` those without a valid sample in row and column.
     std::uint64_t run(std::uint64_t& left) {

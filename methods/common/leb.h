@@ -3,8 +3,8 @@
 // splits and which vertices its split creates. 2n levels; the four triangles around the centre are
 // the base mesh.
 //
-// Source: P. Lindstrom, V. Pascucci, "Terrain Simplification Simplified", TVCG 8(3), 2002, section 3;
-// explicit positions as in F. Loeffler et al., "Hybrid cached patches", 2010, equations 2-5.
+// Source: P. Lindstrom, V. Pascucci, "Terrain Simplification Simplified", TVCG 8(3), 2002, section
+// 3; explicit positions as in F. Loeffler et al., "Hybrid cached patches", 2010, equations 2-5.
 //
 // With s the largest power of two that divides row and column, a vertex is
 //   a centre:        row / s and column / s odd; it splits the diagonal of a square of side 2s;
@@ -33,8 +33,8 @@ struct Sample {
 }
 
 /// Whether a centre's diagonal runs from north-west to south-east. The diagonal joins the square's
-/// two corners that are centres or corners of the square twice as large: those whose coordinates, in
-/// units of 2s, have an even sum.
+/// two corners that are centres or corners of the square twice as large: those whose coordinates,
+/// in units of 2s, have an even sum.
 [[nodiscard]] constexpr bool splits_falling_diagonal(Sample centre, int step) {
     return (((centre.row - step) + (centre.column - step)) & (2 * step)) == 0;
 }
@@ -65,7 +65,9 @@ struct Children {
     }
     if (s == 1) return {};
     const int h = s / 2;
-    return {{{{row - h, column - h}, {row - h, column + h}, {row + h, column - h},
+    return {{{{row - h, column - h},
+              {row - h, column + h},
+              {row + h, column - h},
               {row + h, column + h}}},
             4};
 }

@@ -6,18 +6,18 @@
 // no division, and a viewpoint inside the sphere makes the vertex active by itself. An error of 0
 // means that everything below lies in the plane of the coarser triangle: never active.
 //
-// Planar (absent from the paper): a segment of length d with both ends at depth >= D in front of the
-// image plane, one end in view, is drawn at most lambda d sec(theta) / D pixels long, theta the angle
-// of the image's corner. The ends, true and drawn, of what the vertex's absence moves lie within
-// radius + error of p, so D = depth - radius - error, and the vertex is active when
+// Planar (absent from the paper): a segment of length d with both ends at depth >= D in front of
+// the image plane, one end in view, is drawn at most lambda d sec(theta) / D pixels long, theta the
+// angle of the image's corner. The ends, true and drawn, of what the vertex's absence moves lie
+// within radius + error of p, so D = depth - radius - error, and the vertex is active when
 //     lambda sec(theta) error > tau D,  tested as  (scale + 1) * error + radius > depth.
 // With accumulated errors this bounds the screen error of every sample in view by tau.
 //
 // Nesting. In exact numbers both criteria are nested, because errors are saturated and spheres hold
-// their children's spheres. The arithmetic is double, and stored radii exceed the exact ones by 2^-25
-// of themselves, so rounding (2^-50 of the distance) cannot undo it while the distance is less than
-// 2^24 times the spacing. All is computed from the vertex's row and column, never along the path, so
-// that both triangles of a vertex see the same bits.
+// their children's spheres. The arithmetic is double, and stored radii exceed the exact ones by
+// 2^-25 of themselves, so rounding (2^-50 of the distance) cannot undo it while the distance is
+// less than 2^24 times the spacing. All is computed from the vertex's row and column, never along
+// the path, so that both triangles of a vertex see the same bits.
 
 #include <array>
 #include <cmath>
@@ -60,14 +60,15 @@ struct LebView {
 /// All frustum planes still to be tested.
 inline constexpr unsigned kAllPlanes = (1U << 5) - 1;
 
-/// Criterion of LebStripBuilder. `planes` are the planes that cut the parent's ball; 0 culls nothing.
+/// Criterion of LebStripBuilder. `planes` are the planes that cut the parent's ball; 0 culls
+/// nothing.
 ///
 /// Culling makes vertices inactive, it never removes triangles: the mesh outside the picture is
-/// coarse but whole. Vertex i may be dropped when nothing that it refines is in view. The spheres hold
-/// its descendants, not the corners of its diamond; but every point of the full-resolution surface
-/// over the diamond lies in a leaf triangle whose apex is i or a descendant, so within the longest leaf
-/// edge of one. And what is drawn instead lies up to `error` above or below. Hence the ball
-/// of radius + error + longest leaf edge: constant plus nested, so nested again. A plane that
+/// coarse but whole. Vertex i may be dropped when nothing that it refines is in view. The spheres
+/// hold its descendants, not the corners of its diamond; but every point of the full-resolution
+/// surface over the diamond lies in a leaf triangle whose apex is i or a descendant, so within the
+/// longest leaf edge of one. And what is drawn instead lies up to `error` above or below. Hence the
+/// ball of radius + error + longest leaf edge: constant plus nested, so nested again. A plane that
 /// has the ball wholly inside is not tested below: its children's balls are inside too, by at least
 /// twice the leaf edge, which no rounding bridges.
 template <Metric metric>

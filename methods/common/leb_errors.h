@@ -7,15 +7,15 @@
 //                 the surface at every sample, which the midpoint form does not
 //   radius_i = max over children (|p_i - p_c| + radius_c), 0 at leaves
 //
-// Both triangles of a vertex share its split edge, so delta is one number; a vertex on the border has
-// one triangle and at most two children.
+// Both triangles of a vertex share its split edge, so delta is one number; a vertex on the border
+// has one triangle and at most two children.
 //
 // Stored as float, rounded up: each result is computed in double, enlarged by 2^-23 of itself and
-// rounded to nearest (which takes at most 2^-24 back), so that what is stored exceeds the exact value
-// by 2^-25 of it at least, and by 2^-22 at most. Hence error_i >= delta_i (and >= delta_i + child where
-// accumulated) and radius_i >= |p_i - p_c| + radius_c hold for the stored floats, strictly where the
-// right side is positive; zero stays zero, so a plane costs nothing. The sum of two heights is exact
-// in double unless they differ by a factor of 2^29 or more.
+// rounded to nearest (which takes at most 2^-24 back), so that what is stored exceeds the exact
+// value by 2^-25 of it at least, and by 2^-22 at most. Hence error_i >= delta_i (and >= delta_i +
+// child where accumulated) and radius_i >= |p_i - p_c| + radius_c hold for the stored floats,
+// strictly where the right side is positive; zero stays zero, so a plane costs nothing. The sum of
+// two heights is exact in double unless they differ by a factor of 2^29 or more.
 
 #include "common/leb_grid.h"
 

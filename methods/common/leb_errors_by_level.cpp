@@ -29,12 +29,11 @@ void finish_inner(LebVertex* vertex, std::ptrdiff_t edge_a, std::ptrdiff_t edge_
         const LebVertex& child = vertex[kernel.child[i]];
         const double rise = height - double(child.height);
         child_error = std::max(child_error, child.error);
-        radius = std::max(radius, std::sqrt(kernel.squared_distance[i] + rise * rise) +
-                                      double(child.radius));
+        radius = std::max(
+            radius, std::sqrt(kernel.squared_distance[i] + rise * rise) + double(child.radius));
     }
-    vertex->error = kind == ErrorKind::accumulated
-                        ? stored_above(delta + double(child_error))
-                        : std::max(stored_above(delta), child_error);
+    vertex->error = kind == ErrorKind::accumulated ? stored_above(delta + double(child_error))
+                                                   : std::max(stored_above(delta), child_error);
     vertex->radius = stored_above(radius);
 }
 
@@ -163,9 +162,9 @@ double longest_leaf_edge(const LebGrid& grid) {
         }
         return rise;
     };
-    const double rise = tbb::parallel_reduce(tbb::blocked_range<int>(0, size - 1, 16), 0.0F,
-                                             rise_in_rows,
-                                             [](float a, float b) { return std::max(a, b); });
+    const double rise =
+        tbb::parallel_reduce(tbb::blocked_range<int>(0, size - 1, 16), 0.0F, rise_in_rows,
+                             [](float a, float b) { return std::max(a, b); });
     const glm::dvec2 cell = grid.spacing();
     // The differences were rounded to float: 2^-24 of them at most.
     return std::sqrt(cell.x * cell.x + cell.y * cell.y + rise * rise) * (1 + 0x1p-23);

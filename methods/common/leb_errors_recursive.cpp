@@ -17,7 +17,8 @@ public:
         finished_[grid_.index(vertex)] = true;
 
         const auto [left, right] = split_edge(vertex);
-        const double middle = 0.5 * (double(grid_.at(left).height) + double(grid_.at(right).height));
+        const double middle =
+            0.5 * (double(grid_.at(left).height) + double(grid_.at(right).height));
         const double delta = std::abs(double(grid_.at(vertex).height) - middle);
         double child_error = 0;
         double radius = 0;

@@ -36,8 +36,9 @@ void LebGrid::Free::operator()(LebVertex* vertices) const {
 }
 
 std::unique_ptr<LebVertex[], LebGrid::Free> LebGrid::allocate(std::size_t count) {
-    // Neighbours in a column lie a row apart, on another page each: with pages of 4 KiB the refinement
-    // of a large terrain waits for address translation. The advice may be refused; it is only speed.
+    // Neighbours in a column lie a row apart, on another page each: with pages of 4 KiB the
+    // refinement of a large terrain waits for address translation. The advice may be refused; it is
+    // only speed.
     constexpr std::size_t kHugePage = std::size_t(2) << 20;
     const std::size_t used = count * sizeof(LebVertex);
     const bool large = used >= kHugePage;
@@ -60,7 +61,8 @@ LebGrid::LebGrid(const Terrain& terrain)
     for (int first = 0; first < info.rows; first += kBand) {
         const int rows = std::min(kBand, info.rows - first);
         const auto columns = std::size_t(info.columns);
-        terrain.read({first, 0, rows, info.columns}, std::span(band).first(std::size_t(rows) * columns));
+        terrain.read({first, 0, rows, info.columns},
+                     std::span(band).first(std::size_t(rows) * columns));
         for (int row = 0; row < rows; ++row) {
             const float* heights = band.data() + std::size_t(row) * columns;
             LebVertex* vertices = &at({first + row, 0});

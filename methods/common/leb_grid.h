@@ -23,9 +23,9 @@ struct LebVertex {
 /// repeated to the east and to the south.
 class LebGrid {
 public:
-    /// Reads the terrain in bands of rows through `Terrain::read`; errors and radii are zero. Throws
-    /// InputError for a terrain of more than 32769 samples a side, whose vertices 32-bit indices
-    /// could not name.
+    /// Reads the terrain in bands of rows through `Terrain::read`; errors and radii are zero.
+    /// Throws InputError for a terrain of more than 32769 samples a side, whose vertices 32-bit
+    /// indices could not name.
     explicit LebGrid(const Terrain& terrain);
 
     [[nodiscard]] int size() const { return size_; }  ///< vertices a side, 2^n + 1

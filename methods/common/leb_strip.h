@@ -3,9 +3,10 @@
 //
 // Source: Lindstrom & Pascucci 2002, section 3.1, figure 4 (mesh-refine, submesh-refine,
 // tstrip-append). The path enters each triangle at one end of its longest edge and leaves at the
-// other; a split replaces the triangle by two, whose common end is the old apex. Each triangle, split
-// or not, appends its apex half way, unless that is among the last two. Vertices get the colour of their triangle's level (odd or even), and the strip alternates colours; where two of one
-// colour would follow each other, the vertex before the last is repeated (a swap, drawn as a
+// other; a split replaces the triangle by two, whose common end is the old apex. Each triangle,
+// split or not, appends its apex half way, unless that is among the last two. Vertices get the
+// colour of their triangle's level (odd or even), and the strip alternates colours; where two of
+// one colour would follow each other, the vertex before the last is repeated (a swap, drawn as a
 // degenerate triangle).
 //
 // Vertex i is visited once from each triangle that it splits, so activity must depend on the vertex
@@ -24,7 +25,8 @@ namespace lodbench::common {
 /// The strip of one frame; the memory is kept for the next.
 class LebStrip {
 public:
-    /// Indices row * size + column of the padded grid; triangles face up (anticlockwise from above).
+    /// Indices row * size + column of the padded grid; triangles face up (anticlockwise from
+    /// above).
     [[nodiscard]] std::span<const std::uint32_t> indices() const { return {buffer_.data(), size_}; }
     /// Triangles that are not swaps.
     [[nodiscard]] std::size_t triangle_count() const { return triangles_; }
@@ -53,7 +55,8 @@ public:
         out_ = strip_.buffer_.data();
         end_ = out_ + strip_.buffer_.size();
         reserve(2);
-        // The south-west corner twice: so the first triangle faces up, and there are two to compare with.
+        // The south-west corner twice: so the first triangle faces up, and there are two to compare
+        // with.
         *out_++ = index(last, 0);
         *out_++ = index(last, 0);
         odd_ = false;
@@ -127,8 +130,8 @@ private:
         split<edge, checked>(row, column, apex_row, apex_column, planes);
     }
 
-    /// The triangle that is split at (row, column); its apex lies (apex_row, apex_column) from there.
-    /// `edge`: the vertex splits a side (odd level), else a diagonal.
+    /// The triangle that is split at (row, column); its apex lies (apex_row, apex_column) from
+    /// there. `edge`: the vertex splits a side (odd level), else a diagonal.
     template <bool edge, bool checked>
     void split(int row, int column, int apex_row, int apex_column, unsigned planes) {
         ++triangles_;
@@ -150,15 +153,15 @@ private:
         const int first_column = (apex_column + start_column) / 2;
         const int second_row = (apex_row - start_row) / 2;
         const int second_column = (apex_column - start_column) / 2;
-        // The two children lie on cache lines of their own more often than not: ask for the second one
-        // while the first is being built.
+        // The two children lie on cache lines of their own more often than not: ask for the second
+        // one while the first is being built.
         __builtin_prefetch(vertices_ + index(row + second_row, column + second_column));
         child<!edge, checked>(row + first_row, column + first_column, -first_row, -first_column,
                               planes);
         if constexpr (checked) reserve(2);
         append<edge>(apex);
-        child<!edge, checked>(row + second_row, column + second_column, -second_row,
-                              -second_column, planes);
+        child<!edge, checked>(row + second_row, column + second_column, -second_row, -second_column,
+                              planes);
     }
 
     const LebVertex* vertices_;

@@ -31,8 +31,8 @@ common::RefinerOptions options_from(const Params& params) {
             .culling = params.boolean("culling")};
 }
 
-/// A strip's indices in one of three buffers in turn, so that writing the next frame's does not wait
-/// for the GPU to finish with the last one's.
+/// A strip's indices in one of three buffers in turn, so that writing the next frame's does not
+/// wait for the GPU to finish with the last one's.
 class StripRing {
 public:
     void write(gl::Device& device, std::span<const std::uint32_t> indices) {
@@ -41,8 +41,10 @@ public:
         if (slot.indices.bytes() < indices.size_bytes()) {
             const std::string label = "lindstrom: strip " + std::to_string(current_);
             slot.vertices = gl::VertexArray(device, label);
-            // Half as much again: a flight that slowly sees more grows the buffers a few times only.
-            slot.indices = gl::Buffer(device, label, indices.size_bytes() + indices.size_bytes() / 2);
+            // Half as much again: a flight that slowly sees more grows the buffers a few times
+            // only.
+            slot.indices =
+                gl::Buffer(device, label, indices.size_bytes() + indices.size_bytes() / 2);
             slot.vertices.elements(slot.indices);
         }
         slot.indices.write(indices);
@@ -72,19 +74,20 @@ public:
         device_ = &device;
         const int limit = device.info().max_texture_size;
         const bool in_buffer = columns_ > limit || rows_ > limit;
-        program_ = gl::Program(device, "lindstrom", embedded_shaders(),
-                               {{GL_VERTEX_SHADER, "lindstrom.vert"},
-                                {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
-                               in_buffer ? std::map<std::string, std::string>{{"HEIGHTS_IN_BUFFER", "1"}}
-                                         : std::map<std::string, std::string>{});
+        program_ = gl::Program(
+            device, "lindstrom", embedded_shaders(),
+            {{GL_VERTEX_SHADER, "lindstrom.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
+            in_buffer ? std::map<std::string, std::string>{{"HEIGHTS_IN_BUFFER", "1"}}
+                      : std::map<std::string, std::string>{});
         program_.set("padded_size", refiner_->grid().size());
         program_.set("terrain_size", glm::ivec2(columns_, rows_));
         if (in_buffer) {
-            heights_buffer_ = gl::Buffer(device, "lindstrom: heights",
-                                         std::size_t(rows_) * std::size_t(columns_) * sizeof(float));
+            heights_buffer_ =
+                gl::Buffer(device, "lindstrom: heights",
+                           std::size_t(rows_) * std::size_t(columns_) * sizeof(float));
         } else {
-            heights_texture_ = gl::Texture(device, "lindstrom: heights", GL_TEXTURE_2D, GL_R32F,
-                                           columns_, rows_);
+            heights_texture_ =
+                gl::Texture(device, "lindstrom: heights", GL_TEXTURE_2D, GL_R32F, columns_, rows_);
             heights_texture_.set_parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
             heights_texture_.set_parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
         }
@@ -131,7 +134,8 @@ private:
                 for (int column = 0; column < columns_; ++column) *out++ = vertex[column].height;
             }
             if (heights_buffer_) {
-                const std::size_t offset = std::size_t(first) * std::size_t(columns_) * sizeof(float);
+                const std::size_t offset =
+                    std::size_t(first) * std::size_t(columns_) * sizeof(float);
                 heights_buffer_.write(offset, std::size_t(out - band.data()) * sizeof(float),
                                       band.data());
             } else {
@@ -153,12 +157,14 @@ private:
 
 constexpr ParamSpec kParams[] = {
     real_param("tau", 1, 0.01, 1000, "screen-space error tolerance, pixels"),
-    choice_param("error", "midpoint", "midpoint|accumulated",
-                 "object-space error: the paper's maximum of midpoint errors, or their sum down the "
-                 "hierarchy, which bounds the surface"),
-    choice_param("metric", "euclidean", "euclidean|planar",
-                 "distance: the paper's to the eye, or the depth with the image corner's secant, which "
-                 "bounds the error on a flat image"),
+    choice_param(
+        "error", "midpoint", "midpoint|accumulated",
+        "object-space error: the paper's maximum of midpoint errors, or their sum down the "
+        "hierarchy, which bounds the surface"),
+    choice_param(
+        "metric", "euclidean", "euclidean|planar",
+        "distance: the paper's to the eye, or the depth with the image corner's secant, which "
+        "bounds the error on a flat image"),
     boolean_param("culling", true, "coarsens what lies outside the view frustum")};
 
 constexpr MethodDescriptor kMethods[] = {

@@ -28,17 +28,20 @@ TEST(CommandLine, a_repeatable_option_leaves_what_follows_its_value_alone) {
         run_lodbench({"describe", "--plugin-dir", plugins, "full-grid"}, folder.path());
     EXPECT_EQ(described.status, 0) << described.output;
     const std::string out = (folder.path() / "m.ply").string();
-    const Finished mesh = run_lodbench({"mesh", "--plugin-dir", plugins, "--set", "template.step=4", "template",
-                                        "--scenario", tiny_scenario(folder.path(), "").string(), "-o", out},
-                                       folder.path());
+    const Finished mesh =
+        run_lodbench({"mesh", "--plugin-dir", plugins, "--set", "template.step=4", "template",
+                      "--scenario", tiny_scenario(folder.path(), "").string(), "-o", out},
+                     folder.path());
     EXPECT_EQ(mesh.status, 0) << mesh.output;
 }
 
 TEST(CommandLine, an_unknown_method_is_refused_alike_by_every_command) {
     const ScratchFolder folder;
-    const std::string words = "no method 'nope' was found; known: full-grid, lindstrom, pgm, template";
+    const std::string words =
+        "no method 'nope' was found; known: full-grid, lindstrom, pgm, template";
     for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"describe", "nope"}, {"mesh", "nope", "-o", "m.ply"},
+         {std::vector<std::string>{"describe", "nope"},
+          {"mesh", "nope", "-o", "m.ply"},
           {"run", "--method", "nope", "--out", (folder.path() / "out").string()}}) {
         const Finished finished = run_lodbench(arguments, folder.path());
         EXPECT_EQ(finished.status, 2);
@@ -59,12 +62,16 @@ TEST(Resume, refuses_arguments_that_contradict_the_run_and_takes_the_same_again)
         return run_lodbench(arguments, folder.path());
     };
     EXPECT_EQ(again({}).status, 0);
-    for (const std::vector<std::string>& more :
-         {std::vector<std::string>{"--frames", "1"}, {"--seed", "7"}, {"--method", "pgm"},
-          {"--set", "full-grid.tile_samples=100"}, {"--repeat", "2"}, {"--size", "8x8"}}) {
+    for (const std::vector<std::string>& more : {std::vector<std::string>{"--frames", "1"},
+                                                 {"--seed", "7"},
+                                                 {"--method", "pgm"},
+                                                 {"--set", "full-grid.tile_samples=100"},
+                                                 {"--repeat", "2"},
+                                                 {"--size", "8x8"}}) {
         const Finished finished = again(more);
         EXPECT_EQ(finished.status, 2) << more.front() << finished.output;
-        EXPECT_THAT(finished.output, HasSubstr("run.json; give --resume and --out alone, or as it began: "));
+        EXPECT_THAT(finished.output,
+                    HasSubstr("run.json; give --resume and --out alone, or as it began: "));
     }
     EXPECT_EQ(cells_of(out).size(), 1U) << "no cell was added";
 }
@@ -73,7 +80,8 @@ TEST(Output, a_missing_folder_is_named_and_what_is_no_regular_file_stays) {
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "").string();
     const auto mesh = [&](const std::string& out) {
-        return run_lodbench({"mesh", "full-grid", "--scenario", scenario, "-o", out}, folder.path());
+        return run_lodbench({"mesh", "full-grid", "--scenario", scenario, "-o", out},
+                            folder.path());
     };
     const Finished missing = mesh((folder.path() / "none" / "m.ply").string());
     EXPECT_EQ(missing.status, 4);

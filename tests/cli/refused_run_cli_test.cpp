@@ -1,5 +1,5 @@
-// What `run` says of a terrain it cannot fly and of a device that is not there, and how it goes on when mended;
-// `list` and `describe` for programs.
+// What `run` says of a terrain it cannot fly and of a device that is not there, and how it goes on
+// when mended; `list` and `describe` for programs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,23 +18,28 @@ class BadTerrain : public testing::Test {
 protected:
     /// Three frames over the file, which lies beside the scenario.
     fs::path scenario(const std::string& terrain) const {
-        return folder_.write("bad.toml", "[terrain]\nfile = \"" + terrain +
-                                             "\"\nspacing = 10\n[viewport]\nwidth = 32\nheight = 24\n"
-                                             "[flight]\nkind = \"line\"\nframes = 3\nwarmup_frames = 0\n"
-                                             "start = [0, 0, 500]\nend = [10, 10, 500]\npitch = -60\n"
-                                             "[run]\nrepetitions = 2\n");
+        return folder_.write("bad.toml",
+                             "[terrain]\nfile = \"" + terrain +
+                                 "\"\nspacing = 10\n[viewport]\nwidth = 32\nheight = 24\n"
+                                 "[flight]\nkind = \"line\"\nframes = 3\nwarmup_frames = 0\n"
+                                 "start = [0, 0, 500]\nend = [10, 10, 500]\npitch = -60\n"
+                                 "[run]\nrepetitions = 2\n");
     }
     Finished run(const std::string& terrain, const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> arguments = {"run",      scenario(terrain).string(), "--out",     out().string(),
-                                              "--method", "full-grid",                "--method", "lindstrom"};
+        std::vector<std::string> arguments = {"run",      scenario(terrain).string(),
+                                              "--out",    out().string(),
+                                              "--method", "full-grid",
+                                              "--method", "lindstrom"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_lodbench(arguments, folder_.path());
     }
     [[nodiscard]] fs::path out() const { return folder_.path() / "out"; }
 
-    /// Exit status 2, one message with all the parts, and no cell; once `mend` has run, --resume flies all.
+    /// Exit status 2, one message with all the parts, and no cell; once `mend` has run, --resume
+    /// flies all.
     template <typename Mend>
-    void expect_refused_until_mended(const std::string& terrain, const std::vector<std::string>& parts,
+    void expect_refused_until_mended(const std::string& terrain,
+                                     const std::vector<std::string>& parts,
                                      const Mend& mend) const {
         const Finished refused = run(terrain);
         EXPECT_EQ(refused.status, 2) << refused.output;
@@ -56,7 +61,8 @@ protected:
         Bytes bytes(false);
         for (int i = 0; i < 25; ++i) bytes.real32(i == 7 ? seventh : float(i));
         folder_.write("heights.raw", bytes.str());
-        folder_.write("heights.raw.toml", "rows = 5\ncolumns = 5\ntype = \"float32\"\nendian = \"little\"\n");
+        folder_.write("heights.raw.toml",
+                      "rows = 5\ncolumns = 5\ntype = \"float32\"\nendian = \"little\"\n");
     }
 
     TemporaryFolder folder_;
@@ -64,14 +70,15 @@ protected:
 
 TEST_F(BadTerrain, heights_that_are_nan_are_refused_with_row_and_column) {
     write_heights(std::numeric_limits<float>::quiet_NaN());
-    expect_refused_until_mended("heights.raw",
-                                {"bad.toml:2: ", "heights.raw: ", "row 1, column 2", "nan", "no-data"},
-                                [&] { write_heights(7); });
+    expect_refused_until_mended(
+        "heights.raw", {"bad.toml:2: ", "heights.raw: ", "row 1, column 2", "nan", "no-data"},
+        [&] { write_heights(7); });
 }
 
 #ifdef LODBENCH_WITH_OIIO
 TEST_F(BadTerrain, truncated_png_is_refused) {
-    const std::string whole = png(5, 5, 8, 0, std::vector<std::string>(5, std::string("\1\2\3\4\5")));
+    const std::string whole =
+        png(5, 5, 8, 0, std::vector<std::string>(5, std::string("\1\2\3\4\5")));
     folder_.write("cut.png", std::string_view(whole).substr(0, whole.size() - 9));
     expect_refused_until_mended("cut.png", {"bad.toml:2: ", "cut.png: ", "is truncated", "anew"},
                                 [&] { folder_.write("cut.png", whole); });
@@ -80,8 +87,10 @@ TEST_F(BadTerrain, truncated_png_is_refused) {
 
 TEST_F(BadTerrain, one_row_is_refused) {
     write_heights(7);
-    folder_.write("heights.raw.toml", "rows = 1\ncolumns = 25\ntype = \"float32\"\nendian = \"little\"\n");
-    expect_refused_until_mended("heights.raw", {"bad.toml:2: ", "heights.raw.toml:1: rows = 1", "2 to"},
+    folder_.write("heights.raw.toml",
+                  "rows = 1\ncolumns = 25\ntype = \"float32\"\nendian = \"little\"\n");
+    expect_refused_until_mended("heights.raw",
+                                {"bad.toml:2: ", "heights.raw.toml:1: rows = 1", "2 to"},
                                 [&] { write_heights(7); });
 }
 
@@ -116,8 +125,9 @@ TEST_F(BadTerrain, mistakes_of_usage_end_with_status_2_and_leave_no_folder) {
 
 TEST_F(BadTerrain, method_that_fails_ends_with_status_3_and_keeps_the_others) {
     write_heights(7);
-    const Finished finished = run("heights.raw", {"--method", "throws-in-create", "--plugin-dir",
-                                                  broken_plugin_folder("throws_in_create"), "--json"});
+    const Finished finished =
+        run("heights.raw", {"--method", "throws-in-create", "--plugin-dir",
+                            broken_plugin_folder("throws_in_create"), "--json"});
     EXPECT_EQ(finished.status, 3) << finished.output;
     EXPECT_THAT(finished.output, HasSubstr("\"exit_status\":3"));
     int good = 0;
@@ -140,7 +150,8 @@ TEST(List, json_names_each_method_and_describe_each_parameter) {
         EXPECT_EQ(method["id"].asString(), id);
         EXPECT_TRUE(method["params"].isArray());
         for (const Json::Value& param : method["params"]) {
-            for (const char* key : {"name", "type", "help", "default"}) EXPECT_TRUE(param.isMember(key)) << key;
+            for (const char* key : {"name", "type", "help", "default"})
+                EXPECT_TRUE(param.isMember(key)) << key;
         }
     }
     EXPECT_EQ(run_lodbench({"describe", "nosuch"}, folder.path()).status, 2);

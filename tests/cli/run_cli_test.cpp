@@ -39,8 +39,8 @@ protected:
         std::string out, err;
     };
 
-    /// A terrain of 129 x 129 samples: 2 x 2 blocks of 64 x 64 cells for full-grid. The camera looks straight
-    /// down at all of it first, and leaves it behind in the end.
+    /// A terrain of 129 x 129 samples: 2 x 2 blocks of 64 x 64 cells for full-grid. The camera
+    /// looks straight down at all of it first, and leaves it behind in the end.
     fs::path scenario(const std::string& more = "") {
         const fs::path file = folder_.path() / "small.toml";
         std::ofstream(file) << "name = \"small\"\n[terrain]\nsynthetic = \"ridged\"\nrows = 129\n"
@@ -51,7 +51,9 @@ protected:
                             << more;
         return file;
     }
-    [[nodiscard]] fs::path out(const std::string& name = "out") const { return folder_.path() / name; }
+    [[nodiscard]] fs::path out(const std::string& name = "out") const {
+        return folder_.path() / name;
+    }
 
     /// Standard output and error apart.
     Spoken run(const fs::path& scenario, Arguments more, const fs::path& out) {
@@ -87,8 +89,8 @@ protected:
     ScratchFolder folder_;
 };
 
-const Arguments kThree = {"--method", "full-grid", "--method", "lindstrom", "--method", "pgm",
-                          "--set",    "pgm.grid=24"};
+const Arguments kThree = {"--method", "full-grid", "--method", "lindstrom",
+                          "--method", "pgm",       "--set",    "pgm.grid=24"};
 
 Arguments operator+(Arguments first, const Arguments& second) {
     first.insert(first.end(), second.begin(), second.end());
@@ -96,13 +98,14 @@ Arguments operator+(Arguments first, const Arguments& second) {
 }
 
 TEST_F(Run, table_goes_to_standard_output_and_progress_to_standard_error) {
-    const Spoken spoken = run(scenario(), {"--method", "pgm", "--method", "full-grid", "--set",
-                                           "pgm.grid=24,32"}, out());
+    const Spoken spoken = run(
+        scenario(), {"--method", "pgm", "--method", "full-grid", "--set", "pgm.grid=24,32"}, out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
     // One row for each method and setting, whatever order they were named and flown in.
     std::vector<std::size_t> at;
-    for (const char* text : {"small\n", "  method ", "fps (range)", "median ms", "triangles", "GPU MiB",
-                             "\n  full-grid ", "\n  pgm grid=24 ", "\n  pgm grid=32 ", "\nresults ", "\npictures "}) {
+    for (const char* text :
+         {"small\n", "  method ", "fps (range)", "median ms", "triangles", "GPU MiB",
+          "\n  full-grid ", "\n  pgm grid=24 ", "\n  pgm grid=32 ", "\nresults ", "\npictures "}) {
         at.push_back(spoken.out.find(text));
         ASSERT_NE(at.back(), std::string::npos) << text << " in " << spoken.out;
     }
@@ -123,18 +126,21 @@ TEST_F(Run, json_is_one_object_with_the_cells_as_they_are_in_the_file) {
     EXPECT_TRUE(json["warnings"].isArray());
     const std::vector<Json::Value> cells = cells_of(out());
     ASSERT_EQ(json["cells"].size(), cells.size());
-    for (Json::ArrayIndex i = 0; i < json["cells"].size(); ++i) EXPECT_EQ(json["cells"][i], cells[i]);
+    for (Json::ArrayIndex i = 0; i < json["cells"].size(); ++i)
+        EXPECT_EQ(json["cells"][i], cells[i]);
 }
 
 TEST_F(Run, options_replace_what_the_scenario_says_and_lists_are_swept) {
-    const Spoken spoken =
-        run(scenario("[[method]]\nid = \"full-grid\"\n"),
-            {"--method", "lindstrom", "--set", "lindstrom.tau=1,4", "--set", "lindstrom.culling=false",
-             "--size", "40x30", "--frames", "3", "--repeat", "2", "--seed", "77"}, out());
+    const Spoken spoken = run(
+        scenario("[[method]]\nid = \"full-grid\"\n"),
+        {"--method", "lindstrom", "--set", "lindstrom.tau=1,4", "--set", "lindstrom.culling=false",
+         "--size", "40x30", "--frames", "3", "--repeat", "2", "--seed", "77"},
+        out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
     std::map<double, std::set<int>> repetitions;
     for (const Json::Value& cell : cells_of(out())) {
-        EXPECT_EQ(cell["method"].asString(), "lindstrom") << "--method leaves out what the scenario names";
+        EXPECT_EQ(cell["method"].asString(), "lindstrom")
+            << "--method leaves out what the scenario names";
         EXPECT_EQ(cell["frames"].asInt(), 3);
         EXPECT_FALSE(cell["params"]["culling"].asBool());
         EXPECT_EQ(cell["claimed_px"].asDouble(), cell["params"]["tau"].asDouble());
@@ -151,7 +157,8 @@ TEST_F(Run, options_replace_what_the_scenario_says_and_lists_are_swept) {
 }
 
 TEST_F(Run, pictures_and_wireframes_are_whole_png_of_the_size_asked_for) {
-    const Spoken spoken = run(scenario(), kThree + Arguments{"--size", "40x30", "--frames", "2"}, out());
+    const Spoken spoken =
+        run(scenario(), kThree + Arguments{"--size", "40x30", "--frames", "2"}, out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
     std::set<std::string> names;
     std::string check = "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/check_png.py 40 30";
@@ -160,11 +167,12 @@ TEST_F(Run, pictures_and_wireframes_are_whole_png_of_the_size_asked_for) {
         check += " '" + file.path().string() + "'";
     }
     EXPECT_EQ(std::system(check.c_str()), 0);
-    EXPECT_EQ(names, (std::set<std::string>{
-                         "full-grid__small__r0__f00000.png", "full-grid__small__r0__f00000__wireframe.png",
-                         "lindstrom__small__r0__f00000.png", "lindstrom__small__r0__f00000__wireframe.png",
-                         "pgm__grid=24__small__r0__f00000.png",
-                         "pgm__grid=24__small__r0__f00000__wireframe.png"}));
+    EXPECT_EQ(names,
+              (std::set<std::string>{
+                  "full-grid__small__r0__f00000.png", "full-grid__small__r0__f00000__wireframe.png",
+                  "lindstrom__small__r0__f00000.png", "lindstrom__small__r0__f00000__wireframe.png",
+                  "pgm__grid=24__small__r0__f00000.png",
+                  "pgm__grid=24__small__r0__f00000__wireframe.png"}));
     EXPECT_NE(text_of(out() / "shots" / "full-grid__small__r0__f00000.png"),
               text_of(out() / "shots" / "full-grid__small__r0__f00000__wireframe.png"));
 }
@@ -174,15 +182,17 @@ TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
     const std::vector<Json::Value> cells = cells_of(out());
     ASSERT_EQ(cells.size(), 3U);
     for (const Json::Value& cell : cells) {
-        for (const char* text : {"cell", "method", "scenario", "status", "terrain", "terrain_checksum",
-                                 "timer_verdict", "depth_hash"}) {
+        for (const char* text : {"cell", "method", "scenario", "status", "terrain",
+                                 "terrain_checksum", "timer_verdict", "depth_hash"}) {
             EXPECT_TRUE(cell[text].isString() && !cell[text].asString().empty()) << text;
         }
-        for (const char* number : {"repetition", "frames", "fps", "prepare_s", "gpu_bytes", "peak_rss_bytes"}) {
+        for (const char* number :
+             {"repetition", "frames", "fps", "prepare_s", "gpu_bytes", "peak_rss_bytes"}) {
             EXPECT_TRUE(cell[number].isNumeric()) << number;
         }
         for (const char* time : {"frame_ms", "select_ms", "submit_ms", "gpu_ms", "cpu_ms"}) {
-            if (std::string(time) == "gpu_ms" && cell[time].isNull()) continue;  // no timer to believe
+            if (std::string(time) == "gpu_ms" && cell[time].isNull())
+                continue;  // no timer to believe
             EXPECT_TRUE(cell[time]["mean"].isNumeric()) << time;
             EXPECT_TRUE(cell[time]["median"].isNumeric()) << time;
             for (const char* part : {"p90", "p95", "p99", "p999", "low1"}) {
@@ -190,7 +200,8 @@ TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
                 EXPECT_TRUE(cell[time][part].isNull()) << "8 frames do not support " << part;
             }
         }
-        for (const char* count : {"triangles", "triangles_nondegenerate", "draw_calls", "uploaded_bytes"}) {
+        for (const char* count :
+             {"triangles", "triangles_nondegenerate", "draw_calls", "uploaded_bytes"}) {
             for (const char* part : {"mean", "min", "max"}) {
                 EXPECT_TRUE(cell[count][part].isNumeric()) << count << part;
             }
@@ -212,7 +223,9 @@ TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
 
 TEST_F(Run, statistics_of_a_cell_are_those_of_its_frames) {
     constexpr int kFrames = 200;  // as many as P95 needs
-    ASSERT_EQ(run(scenario(), {"--method", "full-grid", "--frames", std::to_string(kFrames)}, out()).status, 0);
+    ASSERT_EQ(run(scenario(), {"--method", "full-grid", "--frames", std::to_string(kFrames)}, out())
+                  .status,
+              0);
     const Json::Value cell = cells_of(out()).at(0);
     const std::vector<FrameRow> frames = frames_of(out(), cell["cell"].asString());
     ASSERT_EQ(frames.size(), std::size_t(kFrames));
@@ -229,7 +242,9 @@ TEST_F(Run, statistics_of_a_cell_are_those_of_its_frames) {
     std::ranges::sort(wall);
     const double mean = std::accumulate(wall.begin(), wall.end(), 0.0) / kFrames;
     // The smallest time such that at least p percent of all are not above it.
-    const auto nearest_rank = [&](int percent) { return wall[std::size_t((kFrames * percent + 99) / 100 - 1)]; };
+    const auto nearest_rank = [&](int percent) {
+        return wall[std::size_t((kFrames * percent + 99) / 100 - 1)];
+    };
     const Json::Value& times = cell["frame_ms"];
     const double rounding = 1e-12 * wall.back();  // written with 15 digits
     EXPECT_NEAR(cell["fps"].asDouble(), 1000 / mean, 1e-12 * 1000 / mean);
@@ -250,7 +265,8 @@ TEST_F(Run, full_grid_draws_exactly_the_triangles_of_its_visible_blocks) {
     const Json::Value cell = cells_of(out()).at(0);
     constexpr double kBlock = 2 * 64 * 64;
     EXPECT_EQ(cell["counters"]["blocks_total"].asDouble(), 4);
-    EXPECT_EQ(cell["triangles"]["mean"].asDouble(), kBlock * cell["counters"]["blocks_visible"].asDouble());
+    EXPECT_EQ(cell["triangles"]["mean"].asDouble(),
+              kBlock * cell["counters"]["blocks_visible"].asDouble());
     const std::vector<FrameRow> frames = frames_of(out(), cell["cell"].asString());
     ASSERT_EQ(frames.size(), 8U);
     EXPECT_EQ(frames.front().at("triangles"), 4 * kBlock) << "all of the terrain is in sight";
@@ -272,19 +288,23 @@ TEST_F(Run, one_seed_gives_the_same_order_counts_and_pictures_twice) {
         const std::string cell = first[i]["cell"].asString();
         EXPECT_EQ(cell, second[i]["cell"].asString()) << "the order of the cells";
         EXPECT_EQ(first[i]["depth_hash"], second[i]["depth_hash"]) << cell;
-        const std::vector<FrameRow> a = frames_of(out("first"), cell), b = frames_of(out("second"), cell);
+        const std::vector<FrameRow> a = frames_of(out("first"), cell),
+                                    b = frames_of(out("second"), cell);
         ASSERT_EQ(a.size(), 8U);
         ASSERT_EQ(b.size(), 8U);
         for (std::size_t frame = 0; frame < a.size(); ++frame) {
             for (const char* count : {"triangles", "draw_calls", "uploaded_bytes"}) {
-                EXPECT_EQ(a[frame].at(count), b[frame].at(count)) << cell << ", frame " << frame << ": " << count;
+                EXPECT_EQ(a[frame].at(count), b[frame].at(count))
+                    << cell << ", frame " << frame << ": " << count;
             }
         }
     }
-    ASSERT_EQ(run(file, kThree + Arguments{"--seed", "6", "--frames", "1"}, out("other")).status, 0);
+    ASSERT_EQ(run(file, kThree + Arguments{"--seed", "6", "--frames", "1"}, out("other")).status,
+              0);
     const auto order_of = [this](const std::string& name) {
         std::vector<std::string> order;
-        for (const Json::Value& cell : cells_of(out(name))) order.push_back(cell["cell"].asString());
+        for (const Json::Value& cell : cells_of(out(name)))
+            order.push_back(cell["cell"].asString());
         return order;
     };
     const std::vector<std::string> order = order_of("first"), other = order_of("other");
@@ -297,10 +317,12 @@ TEST_F(Run, run_json_holds_the_whole_context) {
     ASSERT_EQ(run(file, {"--method", "lindstrom"}, out()).status, 0);
     const Json::Value json = run_json(out());
     EXPECT_TRUE(json["schema_version"].isNumeric());
-    for (const char* text : {"tool_version", "compiler", "abi_tag", "os", "kernel", "cpu", "command_line"}) {
+    for (const char* text :
+         {"tool_version", "compiler", "abi_tag", "os", "kernel", "cpu", "command_line"}) {
         EXPECT_TRUE(json[text].isString() && !json[text].asString().empty()) << text;
     }
-    for (const char* member : {"commit", "build_type"}) EXPECT_TRUE(json.isMember(member)) << member;
+    for (const char* member : {"commit", "build_type"})
+        EXPECT_TRUE(json.isMember(member)) << member;
     EXPECT_THAT(json["command_line"].asString(), HasSubstr("run " + file.string()));
     EXPECT_GE(json["cores"].asInt(), 1);
     for (const char* text : {"vendor", "renderer", "version", "device", "timer_verdict"}) {

@@ -46,7 +46,8 @@ inline std::string text_of(const fs::path& path) {
     return text.str();
 }
 
-/// Starts lodbench with its output in `log`; `prepare` runs in the child before it becomes lodbench.
+/// Starts lodbench with its output in `log`; `prepare` runs in the child before it becomes
+/// lodbench.
 inline pid_t start_lodbench(const std::vector<std::string>& arguments, const fs::path& log,
                             const std::function<void()>& prepare = {}) {
     const pid_t child = fork();
@@ -55,7 +56,8 @@ inline pid_t start_lodbench(const std::vector<std::string>& arguments, const fs:
     dup2(output, 1);
     dup2(output, 2);
     std::vector<char*> argv = {const_cast<char*>(LODBENCH_BINARY)};
-    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    for (const std::string& argument : arguments)
+        argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     if (prepare) prepare();
     execv(LODBENCH_BINARY, argv.data());

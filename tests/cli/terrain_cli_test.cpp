@@ -21,8 +21,9 @@ struct Outcome {
 class TerrainCommand : public testing::Test {
 protected:
     Outcome run(const std::string& arguments) const {
-        const std::string command = "cd '" + folder_.path().string() + "' && { '" LODBENCH_BINARY
-                                    "' terrain " + arguments + " ; } 2>&1";
+        const std::string command = "cd '" + folder_.path().string() +
+                                    "' && { '" LODBENCH_BINARY "' terrain " + arguments +
+                                    " ; } 2>&1";
         Outcome outcome;
         std::FILE* pipe = popen(command.c_str(), "r");
         std::array<char, 4096> buffer{};
@@ -42,7 +43,8 @@ protected:
 };
 
 TEST_F(TerrainCommand, info_prints_size_range_spacing_and_checksum) {
-    const Outcome outcome = run("info --synthetic bump --rows 3 --columns 5 --set height=7 --spacing 2");
+    const Outcome outcome =
+        run("info --synthetic bump --rows 3 --columns 5 --set height=7 --spacing 2");
     EXPECT_EQ(outcome.status, 0);
     EXPECT_NE(outcome.text.find("size      3 rows x 5 columns\nheights   0 to 7 m\n"
                                 "spacing   2 m east, 2 m north\n"),
@@ -68,8 +70,9 @@ TEST_F(TerrainCommand, synth_import_and_info_agree) {
 
 TEST_F(TerrainCommand, import_takes_overrides) {
     folder_.write("a.pgm", "P5 2 2 255\n\x01\x02\x03\x04");
-    const Outcome import = run("import a.pgm --spacing 30 --spacing-y 20 --vertical-scale 10 "
-                               "--vertical-offset=-5 --no-data 4 --origin-x 100 -o b.raw --json");
+    const Outcome import =
+        run("import a.pgm --spacing 30 --spacing-y 20 --vertical-scale 10 "
+            "--vertical-offset=-5 --no-data 4 --origin-x 100 -o b.raw --json");
     ASSERT_EQ(import.status, 0) << import.text;
     const Json::Value json = parsed(import.text);
     EXPECT_EQ(json["spacing_m"][0].asDouble(), 30.0);
@@ -93,14 +96,16 @@ TEST_F(TerrainCommand, mistakes_end_with_status_2_and_one_line) {
     const std::pair<const char*, const char*> mistakes[] = {
         {"info none.png", "lodbench: none.png: no such file\n"},
         {"info --synthetic plane --rows 1",
-         "lodbench: synthetic terrain 'plane': 1 rows x 1025 columns make no surface; at least 2 x 2 "
+         "lodbench: synthetic terrain 'plane': 1 rows x 1025 columns make no surface; at least 2 x "
+         "2 "
          "samples are needed\n"},
         {"info --synthetic plane --set height",
          "lodbench: --set height: expected key=value with a number for the value\n"},
         {"info --synthetic plane --set height=1 --set height=2",
          "lodbench: --set height=2: the key is set twice; set it once\n"},
         {"info cut.raw",
-         "lodbench: cut.raw: 3 bytes, but 2 rows x 2 columns of 2 bytes make 8; the file is truncated "
+         "lodbench: cut.raw: 3 bytes, but 2 rows x 2 columns of 2 bytes make 8; the file is "
+         "truncated "
          "or its size is given wrongly\n"},
         {"info cut.raw --seed 3",
          "lodbench: --seed: belongs to synthetic terrains; leave it out or name one with "
@@ -125,9 +130,11 @@ TEST_F(TerrainCommand, a_failed_import_leaves_no_file) {
 }
 
 TEST_F(TerrainCommand, a_full_disk_is_told_and_leaves_no_file) {
-    // A limit on the size of files stands in for the full disk; its signal is ignored, so that write fails.
-    const Outcome outcome = run("info --synthetic plane >/dev/null; trap '' XFSZ; ulimit -f 8; "
-                                "'" LODBENCH_BINARY "' terrain synth plane -o a.raw");
+    // A limit on the size of files stands in for the full disk; its signal is ignored, so that
+    // write fails.
+    const Outcome outcome =
+        run("info --synthetic plane >/dev/null; trap '' XFSZ; ulimit -f 8; "
+            "'" LODBENCH_BINARY "' terrain synth plane -o a.raw");
     EXPECT_EQ(outcome.status, 4);
     EXPECT_NE(outcome.text.find("a.raw: cannot be written: File too large"), std::string::npos)
         << outcome.text;

@@ -1,5 +1,5 @@
-// Each method of the plugin broken_promises breaks one promise: the check of that promise must fail, and a
-// method that keeps them all must pass every check.
+// Each method of the plugin broken_promises breaks one promise: the check of that promise must
+// fail, and a method that keeps them all must pass every check.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -13,26 +13,35 @@ struct Ground {
     const char* from;     ///< keyframes
     const char* to;
 };
-void PrintTo(const Ground& ground, std::ostream* stream) { *stream << ground.name; }
+void PrintTo(const Ground& ground, std::ostream* stream) {
+    *stream << ground.name;
+}
 
 constexpr const char* kFromSmall = "[100, -50, 700]";
 constexpr const char* kToSmall = "[350, 300, 400]";
 
 constexpr Ground kGrounds[] = {
-    {"puget", "file = \"" LODBENCH_SOURCE_DIR "/scenarios/terrain/puget_sound_1025_160m.png\"\n"
-              "spacing = 160\nvertical_scale = 0.1",
+    {"puget",
+     "file = \"" LODBENCH_SOURCE_DIR "/scenarios/terrain/puget_sound_1025_160m.png\"\n"
+     "spacing = 160\nvertical_scale = 0.1",
      "[87000, 84000, 1300]", "[116500, 78000, 3200]"},
     {"plane", "synthetic = \"plane\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
     {"ramp", "synthetic = \"ramp\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
-    {"sphere_cap", "synthetic = \"sphere-cap\"\nrows = 50\ncolumns = 77\nspacing = [8, 10]", kFromSmall, kToSmall},
-    {"bump", "synthetic = \"bump\"\nrows = 77\ncolumns = 40\nspacing = [10, 7]", kFromSmall, kToSmall},
-    {"step", "synthetic = \"step\"\nrows = 67\ncolumns = 66\nspacing = 10", kFromSmall, kToSmall},
-    {"ridged", "synthetic = \"ridged\"\nrows = 257\ncolumns = 257\nspacing = 10", kFromSmall, kToSmall},
-    {"ridged_odd", "synthetic = \"ridged\"\nrows = 100\ncolumns = 37\nspacing = 10", kFromSmall, kToSmall},
-    {"ridged_oblong", "synthetic = \"ridged\"\nrows = 130\ncolumns = 258\nspacing = [10, 15]", kFromSmall,
+    {"sphere_cap", "synthetic = \"sphere-cap\"\nrows = 50\ncolumns = 77\nspacing = [8, 10]",
+     kFromSmall, kToSmall},
+    {"bump", "synthetic = \"bump\"\nrows = 77\ncolumns = 40\nspacing = [10, 7]", kFromSmall,
      kToSmall},
-    {"ridged_2x2", "synthetic = \"ridged\"\nrows = 2\ncolumns = 2\nspacing = 100", kFromSmall, kToSmall},
-    {"ridged_3x5", "synthetic = \"ridged\"\nrows = 3\ncolumns = 5\nspacing = 100", kFromSmall, kToSmall},
+    {"step", "synthetic = \"step\"\nrows = 67\ncolumns = 66\nspacing = 10", kFromSmall, kToSmall},
+    {"ridged", "synthetic = \"ridged\"\nrows = 257\ncolumns = 257\nspacing = 10", kFromSmall,
+     kToSmall},
+    {"ridged_odd", "synthetic = \"ridged\"\nrows = 100\ncolumns = 37\nspacing = 10", kFromSmall,
+     kToSmall},
+    {"ridged_oblong", "synthetic = \"ridged\"\nrows = 130\ncolumns = 258\nspacing = [10, 15]",
+     kFromSmall, kToSmall},
+    {"ridged_2x2", "synthetic = \"ridged\"\nrows = 2\ncolumns = 2\nspacing = 100", kFromSmall,
+     kToSmall},
+    {"ridged_3x5", "synthetic = \"ridged\"\nrows = 3\ncolumns = 5\nspacing = 100", kFromSmall,
+     kToSmall},
 };
 
 class Watertight : public MeshTest, public testing::WithParamInterface<Ground> {
@@ -48,13 +57,14 @@ protected:
 TEST_P(Watertight, at_every_tolerance_and_frame) {
     for (const double tau : {0.25, 1.0, 4.0, 16.0}) {
         for (const int frame : {0, 1, 2}) {
-            const Outcome made = lodbench(
-                fmt::format("mesh lindstrom --before-clipping --set culling=false --set tau={} --frame {} "
-                            "--scenario {} -o {}",
-                            tau, frame, scenario_, file("m.ply")));
+            const Outcome made = lodbench(fmt::format(
+                "mesh lindstrom --before-clipping --set culling=false --set tau={} --frame {} "
+                "--scenario {} -o {}",
+                tau, frame, scenario_, file("m.ply")));
             ASSERT_EQ(made.status, 0) << made.output;
             const Outcome checked = check_mesh(file("m.ply") + " --watertight --covers-terrain");
-            EXPECT_EQ(checked.status, 0) << "tau " << tau << ", frame " << frame << ": " << checked.output;
+            EXPECT_EQ(checked.status, 0)
+                << "tau " << tau << ", frame " << frame << ": " << checked.output;
         }
     }
 }
@@ -62,8 +72,8 @@ TEST_P(Watertight, at_every_tolerance_and_frame) {
 TEST_P(Watertight, base_mesh_far_away_at_a_huge_tolerance) {
     const std::string far = scenario(GetParam().terrain, "[0, 0, 9e7]", "[0, 0, 1e8]", -90);
     const Outcome made =
-        lodbench("mesh lindstrom --before-clipping --set culling=false --set tau=1000 --scenario " + far +
-                 " -o " + file("m.ply"));
+        lodbench("mesh lindstrom --before-clipping --set culling=false --set tau=1000 --scenario " +
+                 far + " -o " + file("m.ply"));
     ASSERT_EQ(made.status, 0) << made.output;
     const Outcome checked = check_mesh(file("m.ply") + " --max-triangles 4");
     EXPECT_EQ(checked.status, 0) << checked.output;
@@ -76,17 +86,21 @@ class FullSurface : public MeshTest {};
 
 TEST_F(FullSurface, lindstrom_equals_the_full_grid_as_the_tolerance_goes_to_zero) {
     if (!has_numpy()) GTEST_SKIP() << "no numpy";
-    // A picture 16384 pixels high makes 0.01 pixel tau d / lambda = 0.7 um at 1 m, under 1.1 mm at the 1.5 km
-    // that any sample is away. Midpoint errors add up over the 14 levels of 129 samples: 15 mm at most.
-    const std::string path = scenario("synthetic = \"ridged\"\nrows = 100\ncolumns = 129\nspacing = 10",
-                                      "[600, 500, 800]", "[650, 500, 800]", -90);
+    // A picture 16384 pixels high makes 0.01 pixel tau d / lambda = 0.7 um at 1 m, under 1.1 mm at
+    // the 1.5 km that any sample is away. Midpoint errors add up over the 14 levels of 129 samples:
+    // 15 mm at most.
+    const std::string path =
+        scenario("synthetic = \"ridged\"\nrows = 100\ncolumns = 129\nspacing = 10",
+                 "[600, 500, 800]", "[650, 500, 800]", -90);
     const std::string common = " --frame 1 --size 64x16384 --scenario " + path + " -o ";
-    const Outcome fine = lodbench("mesh lindstrom --set culling=false --before-clipping --set tau=0.01" +
-                                  common + file("fine.ply"));
+    const Outcome fine =
+        lodbench("mesh lindstrom --set culling=false --before-clipping --set tau=0.01" + common +
+                 file("fine.ply"));
     ASSERT_EQ(fine.status, 0) << fine.output;
     // As high and wide a view as needed to see the whole terrain: nothing may be culled.
-    const std::string above = scenario("synthetic = \"ridged\"\nrows = 100\ncolumns = 129\nspacing = 10",
-                                       "[640, 500, 9000]", "[640, 500, 9001]", -90);
+    const std::string above =
+        scenario("synthetic = \"ridged\"\nrows = 100\ncolumns = 129\nspacing = 10",
+                 "[640, 500, 9000]", "[640, 500, 9001]", -90);
     const Outcome full = lodbench("mesh full-grid --scenario " + above + " -o " + file("full.ply"));
     ASSERT_EQ(full.status, 0) << full.output;
     const Outcome checked =
@@ -99,10 +113,11 @@ protected:
     void SetUp() override {
         MeshTest::SetUp();
         if (!has_numpy()) GTEST_SKIP() << "no numpy";
-        const std::string path = scenario("synthetic = \"ridged\"\nrows = 9\ncolumns = 9\nspacing = 10",
-                                          "[40, 40, 1500]", "[40, 40, 1501]", -90);
-        const Outcome made = lodbench("mesh full-grid --before-clipping --scenario " + path + " -o " +
-                                      file("good.ply"));
+        const std::string path =
+            scenario("synthetic = \"ridged\"\nrows = 9\ncolumns = 9\nspacing = 10",
+                     "[40, 40, 1500]", "[40, 40, 1501]", -90);
+        const Outcome made = lodbench("mesh full-grid --before-clipping --scenario " + path +
+                                      " -o " + file("good.ply"));
         ASSERT_EQ(made.status, 0) << made.output;
         bytes_ = read_bytes(file("good.ply"));
         ASSERT_EQ(check_mesh(file("good.ply") + " --watertight --covers-terrain").status, 0);
@@ -123,7 +138,8 @@ TEST_F(CheckMesh, notices_a_missing_triangle) {
     bytes.replace(count, 16, "element face 127");
     const Outcome outcome = judge(bytes);
     EXPECT_EQ(outcome.status, 1) << outcome.output;
-    EXPECT_NE(outcome.output.find("inner edges are used once"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("inner edges are used once"), std::string::npos)
+        << outcome.output;
 }
 
 TEST_F(CheckMesh, notices_a_triangle_that_is_turned_over) {
@@ -140,7 +156,8 @@ TEST_F(CheckMesh, notices_a_triangle_that_is_drawn_twice) {
     bytes.replace(bytes.find("element face 128"), 16, "element face 129");
     const Outcome outcome = judge(bytes);
     EXPECT_EQ(outcome.status, 1) << outcome.output;
-    EXPECT_NE(outcome.output.find("used twice in one direction"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("used twice in one direction"), std::string::npos)
+        << outcome.output;
 }
 
 TEST_F(CheckMesh, notices_a_camera_that_does_not_fit_its_matrices) {

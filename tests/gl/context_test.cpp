@@ -60,9 +60,11 @@ TEST(Context, refusal_says_what_was_tried) {
             FAIL() << device;
         } catch (const EnvironmentError& error) {
             const std::string text = error.what();
-            EXPECT_NE(text.find("for device '" + std::string(device) + "'"), std::string::npos) << text;
+            EXPECT_NE(text.find("for device '" + std::string(device) + "'"), std::string::npos)
+                << text;
             EXPECT_TRUE(text.find("does not contain") != std::string::npos ||
-                        text.find("there is no device") != std::string::npos) << text;
+                        text.find("there is no device") != std::string::npos)
+                << text;
             EXPECT_EQ(text.find('\n'), std::string::npos);
         }
     }

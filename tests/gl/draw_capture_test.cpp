@@ -49,15 +49,22 @@ void main() { color = vec4(1.0); }
 )"},
 };
 
-const Vertices kCorners = {{0.1F, -0.7F, 1e-30F, 1}, {1.0F / 3, 0.5F, 3e7F, 1}, {-2, 5e-8F, -0.0F, 1},
-                           {4, 4, 0.125F, 1}};
-const Vertices kPicture = {{-0.5F, -0.5F, 0.1F, 1}, {0.5F, -0.5F, 0.7F, 1}, {-0.5F, 0.5F, -0.3F, 1}, {0.6F, 0.6F, 0, 1}};
+const Vertices kCorners = {
+    {0.1F, -0.7F, 1e-30F, 1}, {1.0F / 3, 0.5F, 3e7F, 1}, {-2, 5e-8F, -0.0F, 1}, {4, 4, 0.125F, 1}};
+const Vertices kPicture = {
+    {-0.5F, -0.5F, 0.1F, 1}, {0.5F, -0.5F, 0.7F, 1}, {-0.5F, 0.5F, -0.3F, 1}, {0.6F, 0.6F, 0, 1}};
 
 Program plain(Device& device) {
-    return {device, "plain", kShaders, {{GL_VERTEX_SHADER, "plain.vert"}, {GL_FRAGMENT_SHADER, "white.frag"}}};
+    return {device,
+            "plain",
+            kShaders,
+            {{GL_VERTEX_SHADER, "plain.vert"}, {GL_FRAGMENT_SHADER, "white.frag"}}};
 }
 Program row(Device& device) {
-    return {device, "row", kShaders, {{GL_VERTEX_SHADER, "row.vert"}, {GL_FRAGMENT_SHADER, "white.frag"}}};
+    return {device,
+            "row",
+            kShaders,
+            {{GL_VERTEX_SHADER, "row.vert"}, {GL_FRAGMENT_SHADER, "white.frag"}}};
 }
 
 /// All triangles, and in `calls` the number of vertices of each draw call.
@@ -75,7 +82,8 @@ Vertices captured(Device& device, const Draw& draw, std::vector<std::size_t>* ca
 
 Vertices expected(std::initializer_list<std::size_t> corners, float shift = 0) {
     Vertices result;
-    for (const std::size_t corner : corners) result.push_back(kCorners[corner] + glm::vec4(shift, 0, 0, 0));
+    for (const std::size_t corner : corners)
+        result.push_back(kCorners[corner] + glm::vec4(shift, 0, 0, 0));
     return result;
 }
 
@@ -97,8 +105,8 @@ TEST(DrawCapture, triangle_is_equal_to_the_bit) {
     GlTest gl;
     const Mesh mesh(gl.device);
     const Program program = plain(gl.device);
-    const Vertices found =
-        captured(gl.device, [&] { gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3); });
+    const Vertices found = captured(
+        gl.device, [&] { gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3); });
     ASSERT_EQ(found.size(), 3U);
     EXPECT_EQ(std::memcmp(found.data(), kCorners.data(), 3 * sizeof(glm::vec4)), 0);
     EXPECT_EQ(gl.device.take_errors(), std::vector<std::string>());
@@ -109,23 +117,28 @@ TEST(DrawCapture, indexed_strip_and_fan_come_as_triangles) {
     const Mesh mesh(gl.device);
     const Program program = plain(gl.device);
     std::vector<std::size_t> calls;
-    const Vertices found = captured(gl.device, [&] {
-        gl.device.draw_elements(program, mesh.vertices, GL_TRIANGLES, 6, GL_UNSIGNED_INT);
-        gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLE_FAN, 0, 4);
-    }, &calls);
+    const Vertices found = captured(
+        gl.device,
+        [&] {
+            gl.device.draw_elements(program, mesh.vertices, GL_TRIANGLES, 6, GL_UNSIGNED_INT);
+            gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLE_FAN, 0, 4);
+        },
+        &calls);
     EXPECT_EQ(calls, (std::vector<std::size_t>{6, 6}));
     EXPECT_EQ(found, [] {
         Vertices all = expected({0, 1, 2, 2, 1, 3});
         for (const glm::vec4& v : expected({0, 1, 2, 0, 2, 3})) all.push_back(v);
         return all;
     }());
-    // A strip's second triangle may start at any corner, but keeps its orientation: 2 1 3 or a rotation.
+    // A strip's second triangle may start at any corner, but keeps its orientation: 2 1 3 or a
+    // rotation.
     const Vertices strip = captured(
         gl.device, [&] { gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLE_STRIP, 0, 4); });
     ASSERT_EQ(strip.size(), 6U);
     EXPECT_EQ(Vertices(strip.begin(), strip.begin() + 3), expected({0, 1, 2}));
     const Vertices second(strip.begin() + 3, strip.end());
-    EXPECT_TRUE(second == expected({2, 1, 3}) || second == expected({1, 3, 2}) || second == expected({3, 2, 1}));
+    EXPECT_TRUE(second == expected({2, 1, 3}) || second == expected({1, 3, 2}) ||
+                second == expected({3, 2, 1}));
 }
 
 TEST(DrawCapture, instances_and_indirect_commands_come_in_order) {
@@ -134,10 +147,12 @@ TEST(DrawCapture, instances_and_indirect_commands_come_in_order) {
     const Program program = plain(gl.device);
     Vertices twice = expected({0, 1, 2});
     for (const glm::vec4& v : expected({0, 1, 2}, 8)) twice.push_back(v);
-    EXPECT_EQ(captured(gl.device,
-                       [&] { gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3, 2); }),
-              twice);
-    // count, instances, first, base instance; then count, instances, first index, base vertex, base instance
+    EXPECT_EQ(
+        captured(gl.device,
+                 [&] { gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3, 2); }),
+        twice);
+    // count, instances, first, base instance; then count, instances, first index, base vertex, base
+    // instance
     const std::vector<GLuint> arrays = {3, 2, 0, 0, 3, 1, 1, 0};
     const std::vector<GLuint> elements = {3, 1, 3, 0, 0, 3, 1, 0, 1, 0};
     const Buffer array_commands(gl.device, "array commands", std::span(arrays));
@@ -146,18 +161,20 @@ TEST(DrawCapture, instances_and_indirect_commands_come_in_order) {
     for (const glm::vec4& v : expected({1, 2, 3})) multi.push_back(v);
     EXPECT_EQ(captured(gl.device,
                        [&] {
-                           gl.device.draw_arrays_indirect(program, mesh.vertices, GL_TRIANGLES, array_commands,
-                                                          0, 2);
+                           gl.device.draw_arrays_indirect(program, mesh.vertices, GL_TRIANGLES,
+                                                          array_commands, 0, 2);
                        }),
               multi);
     EXPECT_EQ(captured(gl.device,
                        [&] {
                            gl.device.draw_elements_indirect(program, mesh.vertices, GL_TRIANGLES,
-                                                            GL_UNSIGNED_INT, element_commands, 0, 2);
+                                                            GL_UNSIGNED_INT, element_commands, 0,
+                                                            2);
                        }),
               expected({2, 1, 3, 1, 2, 3}));
-    EXPECT_THROW(gl.device.draw_arrays_indirect(program, mesh.vertices, GL_TRIANGLES, array_commands, 16, 2),
-                 ContractError);
+    EXPECT_THROW(
+        gl.device.draw_arrays_indirect(program, mesh.vertices, GL_TRIANGLES, array_commands, 16, 2),
+        ContractError);
 }
 
 TEST(DrawCapture, tessellated_patches_cover_the_unit_square) {
@@ -170,8 +187,8 @@ TEST(DrawCapture, tessellated_patches_cover_the_unit_square) {
                      {GL_FRAGMENT_SHADER, "white.frag"}});
     program.set("level", 4.0F);
     glPatchParameteri(GL_PATCH_VERTICES, 4);
-    const Vertices found =
-        captured(gl.device, [&] { gl.device.draw_arrays(program, mesh.vertices, GL_PATCHES, 0, 4); });
+    const Vertices found = captured(
+        gl.device, [&] { gl.device.draw_arrays(program, mesh.vertices, GL_PATCHES, 0, 4); });
     ASSERT_EQ(found.size(), 3U * 2 * 4 * 4);  // an even level n makes n x n quads
     double area = 0;
     for (std::size_t i = 0; i < found.size(); i += 3) {
@@ -190,11 +207,14 @@ TEST(DrawCapture, grows_its_buffer_until_all_triangles_fit) {
     const Program program = row(gl.device);
     constexpr int kQuads = 50'000;  // 100,000 triangles of 48 bytes: more than the first megabyte
     std::vector<std::size_t> calls;
-    const Vertices found = captured(gl.device, [&] {
-        gl.device.draw_arrays(program, empty, GL_TRIANGLES, 0, 6);
-        gl.device.draw_arrays(program, empty, GL_TRIANGLES, 0, 6 * kQuads);
-        gl.device.draw_arrays(program, empty, GL_TRIANGLES, 0, 0);
-    }, &calls);
+    const Vertices found = captured(
+        gl.device,
+        [&] {
+            gl.device.draw_arrays(program, empty, GL_TRIANGLES, 0, 6);
+            gl.device.draw_arrays(program, empty, GL_TRIANGLES, 0, 6 * kQuads);
+            gl.device.draw_arrays(program, empty, GL_TRIANGLES, 0, 0);
+        },
+        &calls);
     EXPECT_EQ(calls, (std::vector<std::size_t>{6, 6 * kQuads, 0}));
     ASSERT_EQ(found.size(), 6U * (kQuads + 1));
     EXPECT_EQ(found[6], glm::vec4(0, 0, 0.5, 1));
@@ -233,7 +253,9 @@ TEST(DrawCapture, picture_capture_picture_gives_identical_depth) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glViewport(0, 0, 64, 64);
     glEnable(GL_DEPTH_TEST);
-    const auto draw = [&] { gl.device.draw_elements(program, mesh.vertices, GL_TRIANGLES, 6, GL_UNSIGNED_INT); };
+    const auto draw = [&] {
+        gl.device.draw_elements(program, mesh.vertices, GL_TRIANGLES, 6, GL_UNSIGNED_INT);
+    };
     const auto picture = [&] {
         glClear(GL_DEPTH_BUFFER_BIT);
         draw();
@@ -261,9 +283,10 @@ TEST(DrawCapture, sink_that_throws_leaves_the_device_usable) {
     EXPECT_THROW(gl.device.begin_capture([](std::span<const glm::vec4>) {}), ContractError);
     gl.device.end_capture();
     EXPECT_FALSE(glIsEnabled(GL_RASTERIZER_DISCARD));
-    EXPECT_EQ(captured(gl.device, [&] {
-                  gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3);
-              }).size(), 3U);
+    EXPECT_EQ(captured(gl.device,
+                       [&] { gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3); })
+                  .size(),
+              3U);
     EXPECT_EQ(gl.device.take_errors(), std::vector<std::string>());
 }
 

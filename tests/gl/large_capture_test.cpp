@@ -1,4 +1,5 @@
-// Captures of one large draw call, every triangle checked; and the refusal of vertices that are not at w = 1.
+// Captures of one large draw call, every triangle checked; and the refusal of vertices that are not
+// at w = 1.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +36,9 @@ void main() { color = vec4(1.0); }
 struct Numbered {
     GlTest gl;
     VertexArray empty{gl.device, "empty"};
-    Program program{gl.device, "numbered", kShaders,
+    Program program{gl.device,
+                    "numbered",
+                    kShaders,
                     {{GL_VERTEX_SHADER, "numbered.vert"}, {GL_FRAGMENT_SHADER, "white.frag"}}};
 
     explicit Numbered(float w = 1) { program.set("w", w); }
@@ -65,7 +68,8 @@ TEST_P(LargeCapture, holds_every_triangle_of_one_draw_call_once_and_in_order) {
 }
 
 // Around the first buffer of 2^20 bytes = 21,845.33 triangles, odd above it, and above a million.
-INSTANTIATE_TEST_SUITE_P(triangles, LargeCapture, testing::Values(21'845, 21'846, 32'767, 1'200'001),
+INSTANTIATE_TEST_SUITE_P(triangles, LargeCapture,
+                         testing::Values(21'845, 21'846, 32'767, 1'200'001),
                          testing::PrintToStringParamName());
 
 TEST(Capture, refuses_vertices_whose_w_is_not_one_and_is_closed_afterwards) {

@@ -1,4 +1,5 @@
-// Stage: whatever a method does wrong is told with the call and the plugin's name, and its counts are the GPU's.
+// Stage: whatever a method does wrong is told with the call and the plugin's name, and its counts
+// are the GPU's.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +16,11 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 run::StageSetup broken(const std::string& plugin, const std::string& method) {
-    return {flat(5, 5, 1), LODBENCH_BUILD_DIR "/broken-plugins/" + plugin + "/" + plugin + ".so", method, {}, ""};
+    return {flat(5, 5, 1),
+            LODBENCH_BUILD_DIR "/broken-plugins/" + plugin + "/" + plugin + ".so",
+            method,
+            {},
+            ""};
 }
 
 const Camera kAbove = camera_at({20, 20, 100}, 0, -60);
@@ -53,9 +58,10 @@ TEST(Stage, gl_errors_are_told_once_and_not_blamed_on_the_next_call) {
     Stage stage(broken("raises_gl_error", "raises-gl-error"), signs);
     make_ready(stage);
     stage.select(kAbove, {});
-    EXPECT_THAT(failure_of([&] { stage.draw_picture(); }),
-                AllOf(StartsWith("draw of plugin raises_gl_error.so raised 1 GL error, the first: "),
-                      HasSubstr("GL_INVALID_ENUM")));
+    EXPECT_THAT(
+        failure_of([&] { stage.draw_picture(); }),
+        AllOf(StartsWith("draw of plugin raises_gl_error.so raised 1 GL error, the first: "),
+              HasSubstr("GL_INVALID_ENUM")));
     EXPECT_EQ(failure_of([&] { stage.select(kAbove, {}); }), "");
     EXPECT_THAT(failure_of([&] { static_cast<void>(stage.count_primitives()); }),
                 StartsWith("draw of plugin raises_gl_error.so raised 1 GL error"));
@@ -98,15 +104,18 @@ struct Flyer {
     const char* plugin;
     const char* method;
 };
-void PrintTo(const Flyer& flyer, std::ostream* stream) { *stream << flyer.method; }
+void PrintTo(const Flyer& flyer, std::ostream* stream) {
+    *stream << flyer.method;
+}
 
 class CountedTriangles : public testing::TestWithParam<Flyer> {};
 
 TEST_P(CountedTriangles, are_those_captured_from_every_side) {
     Flight flight(hills(100, 131), GetParam().plugin, GetParam().method);
     std::uint64_t most = 0;
-    for (const Camera& camera : {camera_at({512600, -2900, 900}, 40, -35), camera_at({512600, -2900, 250}, 200, 0, 20),
-                                 camera_at({512600, -2900, 2500}, 0, -90), camera_at({505000, -3000, 900}, 270, 10)}) {
+    for (const Camera& camera :
+         {camera_at({512600, -2900, 900}, 40, -35), camera_at({512600, -2900, 250}, 200, 0, 20),
+          camera_at({512600, -2900, 2500}, 0, -90), camera_at({505000, -3000, 900}, 270, 10)}) {
         flight.select(camera);
         const std::uint64_t count = flight.stage().count_primitives();
         EXPECT_EQ(count, flight.stage().capture().triangle_count());
@@ -117,7 +126,8 @@ TEST_P(CountedTriangles, are_those_captured_from_every_side) {
 }
 
 INSTANTIATE_TEST_SUITE_P(methods, CountedTriangles,
-                         testing::Values(Flyer{"full_grid", "full-grid"}, Flyer{"lindstrom", "lindstrom"},
+                         testing::Values(Flyer{"full_grid", "full-grid"},
+                                         Flyer{"lindstrom", "lindstrom"},
                                          Flyer{"persistent_grid", "pgm"}),
                          [](const auto& flyer) { return std::string(flyer.param.plugin); });
 

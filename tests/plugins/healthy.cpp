@@ -1,4 +1,5 @@
-// Not broken: the neighbour whose cells must be complete, and in a second folder the duplicate of its id.
+// Not broken: the neighbour whose cells must be complete, and in a second folder the duplicate of
+// its id.
 
 #include "quiet_method.h"
 

@@ -31,8 +31,8 @@ constexpr lodbench::MethodDescriptor quiet_descriptor(const char* id) {
 }
 
 /// Exports the class as the plugin's one method.
-#define QUIET_PLUGIN(class_, id_)                                                       \
-    namespace {                                                                         \
-    constexpr lodbench::MethodDescriptor kMethods[] = {quiet_descriptor<class_>(id_)};  \
-    }                                                                                   \
+#define QUIET_PLUGIN(class_, id_)                                                      \
+    namespace {                                                                        \
+    constexpr lodbench::MethodDescriptor kMethods[] = {quiet_descriptor<class_>(id_)}; \
+    }                                                                                  \
     LODBENCH_PLUGIN(kMethods)

@@ -1,4 +1,5 @@
-// The camera's geometry: known answers, and its three descriptions of one frustum against each other.
+// The camera's geometry: known answers, and its three descriptions of one frustum against each
+// other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,12 +42,14 @@ TEST(Camera, centre_and_corners_project_to_known_pixels) {
 }
 
 TEST(Camera, look_puts_the_hint_upward_and_survives_looking_straight_down) {
-    for (const glm::dvec3 direction : {glm::dvec3(1, 0, 0), glm::dvec3(3, -4, 1), glm::dvec3(0, 0, -1),
-                                       glm::dvec3(0, 0, 1), glm::dvec3(1e-12, 0, -1)}) {
+    for (const glm::dvec3 direction :
+         {glm::dvec3(1, 0, 0), glm::dvec3(3, -4, 1), glm::dvec3(0, 0, -1), glm::dvec3(0, 0, 1),
+          glm::dvec3(1e-12, 0, -1)}) {
         const Camera camera = camera_towards(direction);
         EXPECT_NEAR(glm::length(camera.forward() - glm::normalize(direction)), 0, 1e-9);
         EXPECT_NEAR(glm::dot(camera.right(), camera.up()), 0, 1e-12);
-        EXPECT_NEAR(glm::length(glm::cross(camera.right(), camera.up()) + camera.forward()), 0, 1e-12);
+        EXPECT_NEAR(glm::length(glm::cross(camera.right(), camera.up()) + camera.forward()), 0,
+                    1e-12);
         EXPECT_GE(camera.up().z, -1e-9);
         EXPECT_NEAR(camera.right().z, 0, 1e-12) << "no roll";
     }
@@ -77,7 +80,8 @@ TEST(Camera, projection_matrix_pixels_and_planes_agree) {
     for (int i = 0; i < 2000; ++i) {
         const glm::dvec3 relative(offset(random), offset(random), offset(random));
         const glm::dvec4 clip = camera.clip_from_relative() * glm::dvec4(relative, 1);
-        const bool inside_clip = clip.w >= camera.near_plane && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w;
+        const bool inside_clip =
+            clip.w >= camera.near_plane && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w;
         bool inside_planes = true;
         for (const glm::dvec4& plane : planes) {
             inside_planes = inside_planes && glm::dot(glm::dvec3(plane), relative) + plane.w >= 0;

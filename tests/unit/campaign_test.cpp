@@ -44,7 +44,8 @@ TEST(Interleave, is_a_permutation_that_the_seed_decides_and_repetitions_stay_in_
     const auto ids = order(7);
     EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), 60U);
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        EXPECT_EQ(ids[i].back(), char('0' + i / 20)) << "a round holds one repetition of everything";
+        EXPECT_EQ(ids[i].back(), char('0' + i / 20))
+            << "a round holds one repetition of everything";
     }
     EXPECT_NE(std::vector<std::string>(ids.begin(), ids.begin() + 3),
               (std::vector<std::string>{"0r0", "1r0", "2r0"}));
@@ -78,7 +79,8 @@ TEST(CellRecord, survives_the_way_from_child_to_parent) {
 }
 
 TEST(CellRecord, damaged_text_is_an_input_error) {
-    for (const char* text : {"", "[]", "{}", "{\"status\":\"great\"}", "{\"status\":5,\"reason\":[]}", "null"}) {
+    for (const char* text :
+         {"", "[]", "{}", "{\"status\":\"great\"}", "{\"status\":5,\"reason\":[]}", "null"}) {
         EXPECT_THROW((void)read_result(text, "here"), InputError) << text;
         EXPECT_THROW((void)read_spec(text, "here"), InputError) << text;
     }
@@ -89,8 +91,9 @@ TEST(CellRecord, what_was_not_measured_is_null_never_zero) {
     crashed.status = CellStatus::crashed;
     crashed.reason = "aborted";
     const Json::Value json = cell_record({}, "demo", {}, crashed, 16.67);
-    for (const char* key : {"fps", "frame_ms", "gpu_ms", "triangles", "prepare_s", "gpu_bytes", "frames",
-                            "screen_error_px", "pixel_error_px", "popping_px", "image", "bound_honesty"}) {
+    for (const char* key :
+         {"fps", "frame_ms", "gpu_ms", "triangles", "prepare_s", "gpu_bytes", "frames",
+          "screen_error_px", "pixel_error_px", "popping_px", "image", "bound_honesty"}) {
         EXPECT_TRUE(json.isMember(key) && json[key].isNull()) << key;
     }
     const Json::Value good = cell_record({}, "demo", {}, sample_result(), 16.67);
@@ -115,7 +118,8 @@ TEST(Results, files_are_written_whole_or_not_at_all) {
     std::ofstream(base / "lines", std::ios::app) << "{\"half\":";
     EXPECT_EQ(report::read_lines(base / "lines", true), std::vector<std::string>{"{}"});
     EXPECT_EQ(report::read_text(base / "lines"), "{}\n");
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(base), {}), 2) << "no temporary file stays";
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(base), {}), 2)
+        << "no temporary file stays";
     std::filesystem::remove_all(base);
 }
 
@@ -143,7 +147,8 @@ TEST(Table, labels_show_the_parameters_that_differ_and_failures_stand_below) {
     EXPECT_EQ(rows[1].label, "m tau=1");
     EXPECT_EQ(rows[2].label, "m tau=4");
     EXPECT_EQ(rows[1].fields[0], "87.0 (87.0..87.0)");
-    EXPECT_NE(report::markdown_table(rows).find("| m tau=4 | 87.0 (87.0..87.0) |"), std::string::npos);
+    EXPECT_NE(report::markdown_table(rows).find("| m tau=4 | 87.0 (87.0..87.0) |"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -24,14 +24,18 @@ CapturedSurface surface(std::vector<glm::vec3> vertices, glm::dvec3 origin = glm
 double area(const std::vector<glm::dvec3>& triangles) {
     double sum = 0;
     for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
-        sum += glm::length(glm::cross(triangles[i + 1] - triangles[i], triangles[i + 2] - triangles[i])) / 2;
+        sum += glm::length(
+                   glm::cross(triangles[i + 1] - triangles[i], triangles[i + 2] - triangles[i])) /
+               2;
     }
     return sum;
 }
 
 TEST(ClippedTriangles, inside_comes_back_in_world_coordinates) {
-    const auto found = clipped_triangles(surface({{0, 0, 1}, {10, 0, 2}, {0, 10, 3}}, {1e7, 1e7, 100}), square(1e7));
-    EXPECT_EQ(found, (std::vector<glm::dvec3>{{1e7, 1e7, 101}, {1e7 + 10, 1e7, 102}, {1e7, 1e7 + 10, 103}}));
+    const auto found = clipped_triangles(
+        surface({{0, 0, 1}, {10, 0, 2}, {0, 10, 3}}, {1e7, 1e7, 100}), square(1e7));
+    EXPECT_EQ(found, (std::vector<glm::dvec3>{
+                         {1e7, 1e7, 101}, {1e7 + 10, 1e7, 102}, {1e7, 1e7 + 10, 103}}));
 }
 
 TEST(ClippedTriangles, outside_leaves_nothing) {
@@ -44,12 +48,16 @@ TEST(ClippedTriangles, outside_leaves_nothing) {
 
 TEST(ClippedTriangles, areas_of_cuts_are_known) {
     // A triangle that contains the whole square: a seven-cornered polygon at most, here the square.
-    EXPECT_DOUBLE_EQ(area(clipped_triangles(surface({{-30, -30, 0}, {70, -30, 0}, {-30, 70, 0}}), square())), 100);
+    EXPECT_DOUBLE_EQ(
+        area(clipped_triangles(surface({{-30, -30, 0}, {70, -30, 0}, {-30, 70, 0}}), square())),
+        100);
     // Half of a triangle astride the west border.
-    EXPECT_DOUBLE_EQ(area(clipped_triangles(surface({{-2, 2, 0}, {2, 2, 0}, {0, 6, 0}}), square())), 4);
+    EXPECT_DOUBLE_EQ(area(clipped_triangles(surface({{-2, 2, 0}, {2, 2, 0}, {0, 6, 0}}), square())),
+                     4);
     // All four sides cut: a diamond of diagonal 14 loses four tips of base 4 and height 2.
     const std::vector<glm::dvec3> diamond = clipped_triangles(
-        surface({{-2, 5, 0}, {5, -2, 0}, {12, 5, 0}, {-2, 5, 0}, {12, 5, 0}, {5, 12, 0}}), square());
+        surface({{-2, 5, 0}, {5, -2, 0}, {12, 5, 0}, {-2, 5, 0}, {12, 5, 0}, {5, 12, 0}}),
+        square());
     EXPECT_NEAR(area(diamond), 98 - 4 * 4, 1e-12);
 }
 
@@ -81,10 +89,18 @@ TEST(ClippedTriangles, standing_triangles_are_kept_and_flat_ones_dropped) {
 TEST(CapturedSurface, counts_degenerate_and_nonfinite) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinite = std::numeric_limits<float>::infinity();
-    const CapturedSurface found = surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0},      // fine
-                                           {0, 0, 0}, {0, 0, 0}, {0, 1, 0},      // two equal
-                                           {0, 0, 0}, {1, 1, 1}, {3, 3, 3},      // no area
-                                           {0, 0, nan}, {1, 0, 0}, {0, infinite, 0}});
+    const CapturedSurface found = surface({{0, 0, 0},
+                                           {1, 0, 0},
+                                           {0, 1, 0},  // fine
+                                           {0, 0, 0},
+                                           {0, 0, 0},
+                                           {0, 1, 0},  // two equal
+                                           {0, 0, 0},
+                                           {1, 1, 1},
+                                           {3, 3, 3},  // no area
+                                           {0, 0, nan},
+                                           {1, 0, 0},
+                                           {0, infinite, 0}});
     EXPECT_EQ(found.triangle_count(), 4U);
     EXPECT_EQ(nondegenerate_count(found), 1U);
     EXPECT_EQ(nonfinite_count(found), 2U);

@@ -72,8 +72,9 @@ TEST(HeightField, rejects_nan_with_row_and_column) {
 }
 
 TEST(HeightField, rejects_a_grid_without_a_cell) {
-    EXPECT_EQ(refusal(info_of(1, 4), counting(4)),
-              "terrain 'test': 1 rows x 4 columns make no surface; at least 2 x 2 samples are needed");
+    EXPECT_EQ(
+        refusal(info_of(1, 4), counting(4)),
+        "terrain 'test': 1 rows x 4 columns make no surface; at least 2 x 2 samples are needed");
     EXPECT_NE(refusal(info_of(0, 0), {}), "accepted");
 }
 
@@ -90,7 +91,8 @@ TEST(HeightField, a_wrong_number_of_heights_is_the_programmers_mistake) {
     EXPECT_THROW(HeightField(info_of(2, 2), counting(5)), ContractError);
 }
 
-// FNV-1a over the little-endian words 2, 2, and the bits of 0.0, 1.0, 2.0, 3.0, computed apart in Python.
+// FNV-1a over the little-endian words 2, 2, and the bits of 0.0, 1.0, 2.0, 3.0, computed apart in
+// Python.
 TEST(HeightField, checksum_is_fnv_1a_over_dimensions_and_float_bits) {
     EXPECT_EQ(HeightField(info_of(2, 2), counting(4)).info().checksum, "ea1d0dad7a593b48");
 }

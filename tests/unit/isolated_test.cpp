@@ -46,7 +46,8 @@ TEST(Isolated, says_which_signal_or_exit_ended_the_work) {
     const Answer left = ask([]() -> std::string { _exit(3); });
     EXPECT_EQ(left.ending, Ending::died);
     EXPECT_THAT(left.text, HasSubstr("exited with status 3"));
-    EXPECT_EQ(ask([]() -> std::string { _exit(0); }).ending, Ending::died) << "left without an answer";
+    EXPECT_EQ(ask([]() -> std::string { _exit(0); }).ending, Ending::died)
+        << "left without an answer";
 }
 
 TEST(Isolated, ends_work_that_does_not_end) {

@@ -1,4 +1,5 @@
-// The a-priori criteria: level-by-level form against the recursion, nesting in float, known answers.
+// The a-priori criteria: level-by-level form against the recursion, nesting in float, known
+// answers.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,17 @@ constexpr ErrorKind kKinds[] = {ErrorKind::midpoint, ErrorKind::accumulated};
 test::Terrains terrains() {
     test::Terrains all;
     unsigned seed = 1;
-    for (const auto& [rows, columns] : std::initializer_list<std::pair<int, int>>{
-             {2, 2}, {2, 3}, {3, 2}, {3, 3}, {4, 4}, {5, 5}, {2, 17}, {31, 18}, {33, 33}, {66, 65}, {129, 129}}) {
+    for (const auto& [rows, columns] : std::initializer_list<std::pair<int, int>>{{2, 2},
+                                                                                  {2, 3},
+                                                                                  {3, 2},
+                                                                                  {3, 3},
+                                                                                  {4, 4},
+                                                                                  {5, 5},
+                                                                                  {2, 17},
+                                                                                  {31, 18},
+                                                                                  {33, 33},
+                                                                                  {66, 65},
+                                                                                  {129, 129}}) {
         all.push_back(test::random_terrain(rows, columns, seed++));
         all.push_back(test::random_terrain(rows, columns, seed++, {0.3, 120}));
         all.push_back(test::step_terrain(rows, columns));
@@ -35,8 +45,12 @@ TEST(LebErrors, by_level_equal_the_recursion_to_the_bit) {
             for (std::size_t i = 0; i < by_level.vertex_count(); ++i) {
                 const LebVertex& a = by_level.vertices()[i];
                 const LebVertex& b = recursive.vertices()[i];
-                ASSERT_EQ(std::bit_cast<std::uint32_t>(a.error), std::bit_cast<std::uint32_t>(b.error)) << i;
-                ASSERT_EQ(std::bit_cast<std::uint32_t>(a.radius), std::bit_cast<std::uint32_t>(b.radius)) << i;
+                ASSERT_EQ(std::bit_cast<std::uint32_t>(a.error),
+                          std::bit_cast<std::uint32_t>(b.error))
+                    << i;
+                ASSERT_EQ(std::bit_cast<std::uint32_t>(a.radius),
+                          std::bit_cast<std::uint32_t>(b.radius))
+                    << i;
             }
         }
     }
@@ -54,9 +68,10 @@ TEST(LebErrors, nest_in_the_stored_floats) {
                     if (row % last == 0 && column % last == 0) continue;
                     const LebVertex& parent = grid.at(vertex);
                     const auto [left, right] = split_edge(vertex);
-                    const long double delta =
-                        std::abs((static_cast<long double>(grid.at(left).height) + grid.at(right).height) / 2 -
-                                 parent.height);
+                    const long double delta = std::abs(
+                        (static_cast<long double>(grid.at(left).height) + grid.at(right).height) /
+                            2 -
+                        parent.height);
                     ASSERT_GE(parent.error, delta);
                     const Children below = children(vertex);
                     for (int i = 0; i < below.count; ++i) {
@@ -69,7 +84,8 @@ TEST(LebErrors, nest_in_the_stored_floats) {
                         }
                         const long double x = (c.column - column) * grid.spacing().x;
                         const long double y = (c.row - row) * grid.spacing().y;
-                        const long double z = static_cast<long double>(child.height) - parent.height;
+                        const long double z =
+                            static_cast<long double>(child.height) - parent.height;
                         const long double reach = std::sqrt(x * x + y * y + z * z) + child.radius;
                         // Strictly more: the margin that the criteria's own rounding may use up.
                         ASSERT_GE(parent.radius, reach * (1 + 0x1p-25L));
@@ -85,10 +101,10 @@ TEST(LebErrors, of_one_raised_sample_are_its_height_and_half_of_it) {
         5, 5, [](int row, int column) { return row == 1 && column == 1 ? 8.0F : 0.0F; });
     LebGrid grid(*terrain);
     compute_errors_by_level(grid, ErrorKind::midpoint);
-    EXPECT_FLOAT_EQ(grid.at({1, 1}).error, 8);   // splits the diagonal (0, 0)-(2, 2)
-    EXPECT_EQ(grid.at({1, 0}).error, 0);         // edge (0, 0)-(2, 0)
-    EXPECT_FLOAT_EQ(grid.at({2, 0}).error, 8);   // parent of (1, 1)
-    EXPECT_EQ(grid.at({2, 4}).error, 0);         // no descendant there
+    EXPECT_FLOAT_EQ(grid.at({1, 1}).error, 8);  // splits the diagonal (0, 0)-(2, 2)
+    EXPECT_EQ(grid.at({1, 0}).error, 0);        // edge (0, 0)-(2, 0)
+    EXPECT_FLOAT_EQ(grid.at({2, 0}).error, 8);  // parent of (1, 1)
+    EXPECT_EQ(grid.at({2, 4}).error, 0);        // no descendant there
     EXPECT_FLOAT_EQ(grid.at({2, 2}).error, 8);
     EXPECT_EQ(grid.at({1, 0}).radius, 0);
     EXPECT_FLOAT_EQ(grid.at({1, 1}).radius, std::sqrt(164.0F));
@@ -107,13 +123,14 @@ TEST(LebErrors, of_the_full_recursion_never_read_what_was_there_before) {
 }
 
 TEST(LebGrid, repeats_the_last_row_and_column) {
-    const auto terrain = test::make_terrain(
-        4, 6, [](int row, int column) { return float(10 * row + column); });
+    const auto terrain =
+        test::make_terrain(4, 6, [](int row, int column) { return float(10 * row + column); });
     const LebGrid grid(*terrain);
     ASSERT_EQ(grid.size(), 9);
     for (int row = 0; row < 9; ++row) {
         for (int column = 0; column < 9; ++column) {
-            EXPECT_EQ(grid.at({row, column}).height, float(10 * std::min(row, 3) + std::min(column, 5)));
+            EXPECT_EQ(grid.at({row, column}).height,
+                      float(10 * std::min(row, 3) + std::min(column, 5)));
         }
     }
     EXPECT_EQ(grid.north_west(), terrain->info().position(0, 0));
@@ -127,7 +144,8 @@ TEST(LebGrid, takes_the_smallest_power_of_two_that_fits) {
 }
 
 TEST(LebErrors, longest_leaf_edge_covers_every_edge_of_the_full_mesh) {
-    EXPECT_NEAR(longest_leaf_edge(LebGrid(*test::step_terrain(9, 9))), std::sqrt(200 + 300.0 * 300), 1e-3);
+    EXPECT_NEAR(longest_leaf_edge(LebGrid(*test::step_terrain(9, 9))), std::sqrt(200 + 300.0 * 300),
+                1e-3);
     EXPECT_GE(longest_leaf_edge(LebGrid(*test::plane_terrain(9, 9))), std::sqrt(200 + 2.5 * 2.5));
 }
 

@@ -21,7 +21,8 @@ struct Mesh {
     std::set<std::uint32_t> vertices;
 
     Mesh(int size_, std::span<const std::uint32_t> strip) : size(size_), triangles(expand(strip)) {
-        for (const Triangle& t : triangles) vertices.insert(std::begin(t.vertices), std::end(t.vertices));
+        for (const Triangle& t : triangles)
+            vertices.insert(std::begin(t.vertices), std::end(t.vertices));
     }
     [[nodiscard]] Sample sample(std::uint32_t v) const { return {int(v) / size, int(v) % size}; }
 };
@@ -35,9 +36,8 @@ std::string defect_of(const Mesh& mesh) {
         const Sample b = mesh.sample(t.vertices[1]);
         const Sample c = mesh.sample(t.vertices[2]);
         // Rows grow southward: anticlockwise from above is a negative turn in (column, row).
-        const std::int64_t turn =
-            std::int64_t(b.row - a.row) * (c.column - a.column) -
-            std::int64_t(b.column - a.column) * (c.row - a.row);
+        const std::int64_t turn = std::int64_t(b.row - a.row) * (c.column - a.column) -
+                                  std::int64_t(b.column - a.column) * (c.row - a.row);
         if (turn <= 0) return "a triangle faces down or has no area";
         doubled_area += turn;
         for (int i = 0; i < 3; ++i) ++edges[{t.vertices[i], t.vertices[(i + 1) % 3]}];
@@ -55,7 +55,8 @@ std::string defect_of(const Mesh& mesh) {
         }
         const int steps = std::max(std::abs(a.row - b.row), std::abs(a.column - b.column));
         for (int i = 1; i < steps; ++i) {
-            if ((b.row - a.row) * i % steps != 0 || (b.column - a.column) * i % steps != 0) continue;
+            if ((b.row - a.row) * i % steps != 0 || (b.column - a.column) * i % steps != 0)
+                continue;
             const Sample between{a.row + (b.row - a.row) * i / steps,
                                  a.column + (b.column - a.column) * i / steps};
             const auto v = std::uint32_t(between.row * mesh.size + between.column);
@@ -76,7 +77,8 @@ std::set<std::uint32_t> active_set(const LebGrid& grid, const LebView& view, boo
         for (int column = 0; column <= last; ++column) {
             unsigned planes = culling ? kAllPlanes : 0;
             const Sample vertex{row, column};
-            const bool base = (row % last == 0 && column % last == 0) || (row * 2 == last && column * 2 == last);
+            const bool base =
+                (row % last == 0 && column % last == 0) || (row * 2 == last && column * 2 == last);
             if (base || criterion.active(grid.at(vertex), row, column, planes)) {
                 active.insert(std::uint32_t(grid.index(vertex)));
             }
@@ -172,7 +174,8 @@ TEST(LebStrip, of_a_tiny_tolerance_leaves_out_only_what_is_flat) {
         const auto [low, high] = std::minmax({refiner.grid().vertices()[t.vertices[0]].height,
                                               refiner.grid().vertices()[t.vertices[1]].height,
                                               refiner.grid().vertices()[t.vertices[2]].height});
-        const auto [west, east] = std::minmax({t.vertices[0] % 33, t.vertices[1] % 33, t.vertices[2] % 33});
+        const auto [west, east] =
+            std::minmax({t.vertices[0] % 33, t.vertices[1] % 33, t.vertices[2] % 33});
         EXPECT_TRUE(low == high || east - west == 1);
     }
 }
@@ -182,7 +185,8 @@ TEST(LebStrip, of_a_plane_is_the_base_mesh_wherever_the_eye) {
     LebRefiner refiner(*terrain, {0.01, ErrorKind::midpoint, Metric::euclidean, true});
     std::mt19937 random(8);
     for (int i = 0; i < 20; ++i) {
-        EXPECT_EQ(refiner.refine(test::random_camera(terrain->info(), random)).triangle_count(), 4U);
+        EXPECT_EQ(refiner.refine(test::random_camera(terrain->info(), random)).triangle_count(),
+                  4U);
     }
 }
 
@@ -227,8 +231,8 @@ std::vector<double> surface_of(const Mesh& mesh, const LebGrid& grid) {
                 const double w[3] = {turn(p, s[1], s[2]) / area, turn(s[0], p, s[2]) / area,
                                      turn(s[0], s[1], p) / area};
                 if (std::min({w[0], w[1], w[2]}) < 0) continue;
-                heights[grid.index(p)] =
-                    w[0] * grid.at(s[0]).height + w[1] * grid.at(s[1]).height + w[2] * grid.at(s[2]).height;
+                heights[grid.index(p)] = w[0] * grid.at(s[0]).height + w[1] * grid.at(s[1]).height +
+                                         w[2] * grid.at(s[2]).height;
             }
         }
     }
@@ -265,8 +269,9 @@ TEST(LebErrors, accumulated_bound_the_surface_at_every_sample_and_midpoint_ones_
         for (const float tolerance : {2.0F, 5.0F, 10.0F, 30.0F}) {
             // The surface is evaluated in double: a few times 2^-52 of heights under 100 m.
             EXPECT_LE(worst_error(*terrain, ErrorKind::accumulated, tolerance), tolerance + 1e-12);
-            worst_midpoint_ratio = std::max(
-                worst_midpoint_ratio, worst_error(*terrain, ErrorKind::midpoint, tolerance) / tolerance);
+            worst_midpoint_ratio =
+                std::max(worst_midpoint_ratio,
+                         worst_error(*terrain, ErrorKind::midpoint, tolerance) / tolerance);
         }
     }
     EXPECT_GT(worst_midpoint_ratio, 1.0);
@@ -293,9 +298,11 @@ TEST(LebCriterion, culling_keeps_every_vertex_that_touches_the_picture) {
             for (int column = 0; column < 65; ++column) {
                 const std::size_t i = with.grid().index({row, column});
                 const glm::dvec2 xy = terrain->info().position(row, column);
-                for (const double z : {surface_a[i], surface_b[i], double(with.grid().vertices()[i].height)}) {
+                for (const double z :
+                     {surface_a[i], surface_b[i], double(with.grid().vertices()[i].height)}) {
                     const auto pixel = camera.project({xy, z});
-                    if (!pixel || pixel->x < 0 || pixel->y < 0 || pixel->x > 640 || pixel->y > 480) continue;
+                    if (!pixel || pixel->x < 0 || pixel->y < 0 || pixel->x > 640 || pixel->y > 480)
+                        continue;
                     ++in_view;
                     EXPECT_EQ(surface_a[i], surface_b[i]) << frame << " " << row << " " << column;
                 }

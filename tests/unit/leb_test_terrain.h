@@ -13,9 +13,9 @@
 
 namespace lodbench::test {
 
-inline std::unique_ptr<terrain::HeightField> make_terrain(int rows, int columns,
-                                         const std::function<float(int, int)>& height,
-                                         glm::dvec2 spacing = {10, 10}) {
+inline std::unique_ptr<terrain::HeightField> make_terrain(
+    int rows, int columns, const std::function<float(int, int)>& height,
+    glm::dvec2 spacing = {10, 10}) {
     TerrainInfo info;
     info.name = "test";
     info.rows = rows;
@@ -30,7 +30,7 @@ inline std::unique_ptr<terrain::HeightField> make_terrain(int rows, int columns,
 }
 
 inline std::unique_ptr<terrain::HeightField> random_terrain(int rows, int columns, unsigned seed,
-                                           glm::dvec2 spacing = {10, 10}) {
+                                                            glm::dvec2 spacing = {10, 10}) {
     std::mt19937 random(seed);
     return make_terrain(
         rows, columns,

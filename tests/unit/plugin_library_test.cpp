@@ -19,21 +19,25 @@ TEST(PluginLibrary, refusals_name_path_finding_and_expectation) {
         {"no_symbol", "it exports no symbol 'lodbench_plugin'"},
         {"wrong_abi", "its interface number is 99, expected 1"},
         {"wrong_tag", "its ABI tag is 'another compiler', expected '"},
-        {"bad_descriptor", "parameter 'tau' of method 'bad-descriptor' has default 0, outside its range 0.25..16"},
+        {"bad_descriptor",
+         "parameter 'tau' of method 'bad-descriptor' has default 0, outside its range 0.25..16"},
         {"constructor_exits", "while it was loaded: the process exited with status 0"},
-        {"constructor_aborts", "while it was loaded: aborted (signal 6) (its last words: 'out of luck')"},
+        {"constructor_aborts",
+         "while it was loaded: aborted (signal 6) (its last words: 'out of luck')"},
         {"missing", "the loader says '"},
     };
     for (const auto& [name, words] : expected) {
         const PluginListing listing = list_plugin(broken(name));
-        EXPECT_THAT(listing.refusal, testing::StartsWith("plugin " + broken(name).string() + " cannot be used: "));
+        EXPECT_THAT(listing.refusal,
+                    testing::StartsWith("plugin " + broken(name).string() + " cannot be used: "));
         EXPECT_THAT(listing.refusal, HasSubstr(words));
         EXPECT_TRUE(listing.methods.empty());
     }
 }
 
 TEST(PluginLibrary, a_constructor_that_loops_is_given_up_after_the_time_limit) {
-    const PluginListing listing = list_plugin(broken("constructor_loops"), std::chrono::milliseconds(300));
+    const PluginListing listing =
+        list_plugin(broken("constructor_loops"), std::chrono::milliseconds(300));
     EXPECT_THAT(listing.refusal, HasSubstr("it did not load within 0.3 s"));
 }
 
@@ -48,8 +52,8 @@ TEST(PluginLibrary, two_plugins_with_one_id_are_both_refused_and_name_each_other
     const auto listings =
         list_plugins({broken("healthy").parent_path(), broken("duplicate").parent_path()});
     ASSERT_EQ(listings.size(), 2U);
-    EXPECT_THAT(listings[0].refusal, HasSubstr("its method id 'healthy' is also held by " +
-                                               listings[1].path.string()));
+    EXPECT_THAT(listings[0].refusal,
+                HasSubstr("its method id 'healthy' is also held by " + listings[1].path.string()));
     EXPECT_THAT(listings[1].refusal, HasSubstr(listings[0].path.string()));
     EXPECT_TRUE(listings[0].methods.empty() && listings[1].methods.empty());
 }
@@ -78,7 +82,8 @@ TEST(MakeParams, fills_in_defaults_and_reads_every_type) {
     EXPECT_TRUE(defaults.boolean("cull"));
     EXPECT_EQ(defaults.choice("cracks"), "none");
     const Params set = make_params(
-        method_with_params(), {{"tau", "0.5"}, {"count", "9"}, {"cull", "false"}, {"cracks", "skirt"}}, "here");
+        method_with_params(),
+        {{"tau", "0.5"}, {"count", "9"}, {"cull", "false"}, {"cracks", "skirt"}}, "here");
     EXPECT_EQ(set.real("tau"), 0.5);
     EXPECT_EQ(set.integer("count"), 9);
     EXPECT_FALSE(set.boolean("cull"));
@@ -87,7 +92,8 @@ TEST(MakeParams, fills_in_defaults_and_reads_every_type) {
 
 TEST(MakeParams, refusals_name_place_value_and_what_would_be_right) {
     const std::tuple<const char*, const char*, const char*> bad[] = {
-        {"tau", "17", "here: '17' is no value for parameter 'tau' of method 'm'; give a number in 0.25..16"},
+        {"tau", "17",
+         "here: '17' is no value for parameter 'tau' of method 'm'; give a number in 0.25..16"},
         {"tau", "nan", "'nan' is no value"},
         {"tau", "1px", "'1px' is no value"},
         {"tau", "", "'' is no value"},

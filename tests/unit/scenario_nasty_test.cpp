@@ -165,15 +165,9 @@ TEST(NastyToml, mutations_of_a_good_file_parse_or_are_refused) {
                                ? char(random.below(256))
                                : interesting[random.below(std::uint32_t(interesting.size()))];
             switch (random.below(4)) {
-                case 0:
-                    text[at] = c;
-                    break;
-                case 1:
-                    text.insert(at, 1, c);
-                    break;
-                case 2:
-                    text.erase(at, 1 + random.below(8));
-                    break;
+                case 0: text[at] = c; break;
+                case 1: text.insert(at, 1, c); break;
+                case 2: text.erase(at, 1 + random.below(8)); break;
                 default:
                     text.insert(at, text.substr(random.below(std::uint32_t(text.size())), 40));
                     break;

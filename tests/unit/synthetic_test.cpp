@@ -22,7 +22,8 @@ TerrainSource form(const std::string& name, int rows, int columns) {
 }
 
 float at(const HeightField& field, int row, int column) {
-    return field.samples()[std::size_t(row) * std::size_t(field.info().columns) + std::size_t(column)];
+    return field
+        .samples()[std::size_t(row) * std::size_t(field.info().columns) + std::size_t(column)];
 }
 
 std::string refusal(const TerrainSource& source) {
@@ -62,7 +63,8 @@ TEST(Synthetic, sphere_cap_lies_on_its_sphere) {
             const double x = 10.0 * (column - 32);
             const double y = 7.0 * (16 - row);
             const double z = double(at(*field, row, column)) - 3 + rim;
-            // Half a unit in the last place of a float under 128, and the rounding of doubles near 900.
+            // Half a unit in the last place of a float under 128, and the rounding of doubles near
+            // 900.
             EXPECT_NEAR(z, std::sqrt(900.0 * 900 - x * x - y * y), 0x1p-18 + 1e-12);
         }
     }
@@ -93,7 +95,8 @@ TEST(Synthetic, step_is_a_cliff_before_its_column) {
     EXPECT_EQ(at(*field, 1, 5), 50.0F);
 }
 
-// Taken from the first build; an optimiser or a machine that changes one bit of one height is found here.
+// Taken from the first build; an optimiser or a machine that changes one bit of one height is found
+// here.
 TEST(Synthetic, ridged_is_the_same_to_the_bit_everywhere) {
     TerrainSource source = form("ridged", 129, 65);
     source.seed = 7;
@@ -123,8 +126,8 @@ TEST(Synthetic, ridged_stays_in_its_range_and_follows_its_seed) {
     EXPECT_NE(load_terrain(source)->info().checksum, one->info().checksum);
 }
 
-// The noise of every octave is zero on its own lattice; were the lattices not moved apart, all octaves
-// would peak together at each node of the first.
+// The noise of every octave is zero on its own lattice; were the lattices not moved apart, all
+// octaves would peak together at each node of the first.
 TEST(Synthetic, ridged_octaves_do_not_share_their_nodes) {
     TerrainSource source = form("ridged", 65, 65);
     EXPECT_LT(at(*load_terrain(source), 64, 0), 2000.0F * 0.999F);
@@ -136,9 +139,8 @@ TEST(Synthetic, documented_parameters_are_the_known_ones) {
         for (const ShapeParam& param : known.params) {
             TerrainSource source = form(known.name, 9, 9);
             source.shape[param.name] = std::numeric_limits<double>::quiet_NaN();
-            EXPECT_EQ(refusal(source),
-                      std::string("synthetic terrain '") + known.name + "': " + param.name +
-                          " = nan: it must be finite");
+            EXPECT_EQ(refusal(source), std::string("synthetic terrain '") + known.name +
+                                           "': " + param.name + " = nan: it must be finite");
         }
     }
 }
@@ -156,9 +158,10 @@ TEST(Synthetic, refuses_unknown_names_and_lists_the_known) {
 }
 
 TEST(Synthetic, refuses_sizes_without_a_cell_or_beyond_the_cap) {
-    EXPECT_EQ(refusal(form("plane", 1, 9)),
-              "synthetic terrain 'plane': 1 rows x 9 columns make no surface; at least 2 x 2 samples "
-              "are needed");
+    EXPECT_EQ(
+        refusal(form("plane", 1, 9)),
+        "synthetic terrain 'plane': 1 rows x 9 columns make no surface; at least 2 x 2 samples "
+        "are needed");
     EXPECT_NE(refusal(form("plane", 0, 0)), "accepted");
     EXPECT_NE(refusal(form("plane", -5, -5)), "accepted");
     EXPECT_EQ(refusal(form("plane", 2000000000, 2000000000)),

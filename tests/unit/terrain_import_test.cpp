@@ -103,7 +103,8 @@ TEST_F(ImageImport, damaged_and_absurd_images_are_refused_in_one_line) {
     testing::internal::CaptureStderr();
     const std::string whole = png(3, 2, 16, 0, {kRow1, kRow2});
     for (std::size_t length = 0; length < whole.size() - 16; length += 3) {
-        const std::string text = refusal(source("t.png", std::string_view(whole).substr(0, length)));
+        const std::string text =
+            refusal(source("t.png", std::string_view(whole).substr(0, length)));
         EXPECT_EQ(text.find("t.png: "), 0U) << length << ": " << text;
     }
     EXPECT_EQ(refusal(source("t.png", std::string_view(whole).substr(0, 60))),
@@ -119,7 +120,8 @@ TEST_F(ImageImport, damaged_and_absurd_images_are_refused_in_one_line) {
               "e.png: is no PNG (its first bytes say so); fetch or convert it anew");
     std::string changed = whole;
     changed[50] = char(changed[50] ^ 1);
-    EXPECT_EQ(refusal(source("c.png", changed)).find("c.png: is damaged: a chunk before byte "), 0U);
+    EXPECT_EQ(refusal(source("c.png", changed)).find("c.png: is damaged: a chunk before byte "),
+              0U);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     // Whole chunks with too few rows in them: libpng finds out.
     EXPECT_EQ(refusal(source("s.png", png(3, 3, 16, 0, {kRow1, kRow2})))
@@ -141,9 +143,10 @@ TEST_F(ImageImport, exr_of_floats_is_read_as_it_lies) {
 TEST_F(ImageImport, nan_is_refused_unless_it_is_the_no_data) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     TerrainSource given = source("a.exr", test::exr(3, 2, {1, 2, 3, 4, nan, 6}));
-    EXPECT_EQ(refusal(given),
-              "a.exr: the height at row 1, column 1 is nan; every height must be finite, or its value "
-              "given as no-data");
+    EXPECT_EQ(
+        refusal(given),
+        "a.exr: the height at row 1, column 1 is nan; every height must be finite, or its value "
+        "given as no-data");
     given.no_data = std::numeric_limits<double>::quiet_NaN();
     const auto field = load_terrain(given);
     EXPECT_EQ(field->info().void_count, 1U);
@@ -159,9 +162,9 @@ TEST_F(Import, raw_of_16_bits_follows_its_sidecar) {
     const std::string words = "rows = 2\ncolumns = 3\n";
     const std::vector<int> samples = {1, 258, -2, 32767, -32768, 0};
     const auto load = [&](bool big, const std::string& type) {
-        return heights(source("a.raw", packed16(samples, big),
-                              words + "type = \"" + type + "\"\nendian = \"" +
-                                  (big ? "big" : "little") + "\"\n"));
+        return heights(source(
+            "a.raw", packed16(samples, big),
+            words + "type = \"" + type + "\"\nendian = \"" + (big ? "big" : "little") + "\"\n"));
     };
     const std::vector<float> is_signed = {1, 258, -2, 32767, -32768, 0};
     const std::vector<float> is_unsigned = {1, 258, 65534, 32767, 32768, 0};
@@ -177,15 +180,17 @@ TEST_F(Import, raw_needs_a_sidecar_that_fits) {
     EXPECT_EQ(refusal(source("a.raw", "12345678", "rows = 2\ncolumns = 2\ntype = \"int16\"\n")),
               "a.raw.toml: endian is missing; a raw file needs rows, columns, type (int16, uint16, "
               "float32) and endian (little, big)");
-    EXPECT_EQ(refusal(source("a.raw", "1234567",
-                             "rows = 2\ncolumns = 2\ntype = \"int16\"\nendian = \"big\"\n")),
-              "a.raw: 7 bytes, but 2 rows x 2 columns of 2 bytes make 8; the file is truncated or its "
-              "size is given wrongly");
-    EXPECT_EQ(refusal(source("a.raw", "12345678",
-                             "rows = 2000000000\ncolumns = 2000000000\ntype = \"int16\"\n"
-                             "endian = \"big\"\n")),
-              "a.raw: 2000000000 rows x 2000000000 columns are more than the 2147483648 samples that "
-              "are read; crop or thin it");
+    EXPECT_EQ(
+        refusal(source("a.raw", "1234567",
+                       "rows = 2\ncolumns = 2\ntype = \"int16\"\nendian = \"big\"\n")),
+        "a.raw: 7 bytes, but 2 rows x 2 columns of 2 bytes make 8; the file is truncated or its "
+        "size is given wrongly");
+    EXPECT_EQ(
+        refusal(source("a.raw", "12345678",
+                       "rows = 2000000000\ncolumns = 2000000000\ntype = \"int16\"\n"
+                       "endian = \"big\"\n")),
+        "a.raw: 2000000000 rows x 2000000000 columns are more than the 2147483648 samples that "
+        "are read; crop or thin it");
 }
 
 TEST_F(Import, sidecar_mistakes_name_their_line) {
@@ -195,18 +200,20 @@ TEST_F(Import, sidecar_mistakes_name_their_line) {
     EXPECT_EQ(mistake("colums = 2"),
               "a.raw.toml:2: unknown key \"colums\"; known: name, spacing, origin, vertical_scale, "
               "vertical_offset, no_data, voids_filled, rows, columns, type, endian");
-    EXPECT_EQ(mistake("columns = 1"),
-              "a.raw.toml:2: columns = 1; it must lie in 2 to 2147483647");
+    EXPECT_EQ(mistake("columns = 1"), "a.raw.toml:2: columns = 1; it must lie in 2 to 2147483647");
     EXPECT_EQ(mistake("columns = 2.0"), "a.raw.toml:2: columns must be a whole number");
     EXPECT_EQ(mistake("spacing = 0"), "a.raw.toml:2: spacing = 0; it must be greater than 0");
     EXPECT_EQ(mistake("spacing = [1]"), "a.raw.toml:2: spacing must hold two numbers, [x, y]");
     EXPECT_EQ(mistake("spacing = \"1\""), "a.raw.toml:2: spacing must be a finite number");
     EXPECT_EQ(mistake("spacing = true"), "a.raw.toml:2: spacing must be a finite number");
-    EXPECT_EQ(mistake("vertical_scale = inf"), "a.raw.toml:2: vertical_scale must be a finite number");
-    EXPECT_EQ(mistake("type = \"int8\""), "a.raw.toml:2: type = \"int8\"; known: int16, uint16, float32");
-    EXPECT_EQ(mistake("endian = \"middle\""), "a.raw.toml:2: endian = \"middle\"; known: little, big");
+    EXPECT_EQ(mistake("vertical_scale = inf"),
+              "a.raw.toml:2: vertical_scale must be a finite number");
+    EXPECT_EQ(mistake("type = \"int8\""),
+              "a.raw.toml:2: type = \"int8\"; known: int16, uint16, float32");
+    EXPECT_EQ(mistake("endian = \"middle\""),
+              "a.raw.toml:2: endian = \"middle\"; known: little, big");
     EXPECT_EQ(mistake("origin = 3"), "a.raw.toml:2: origin must hold two numbers, [x, y]");
-    EXPECT_EQ(mistake("rows ="  ).find("a.raw.toml:2: not TOML: "), 0U);
+    EXPECT_EQ(mistake("rows =").find("a.raw.toml:2: not TOML: "), 0U);
 }
 
 // OpenImageIO would stretch a maximum of 1000 to 65535.
@@ -225,18 +232,20 @@ TEST_F(Import, damaged_pgm_is_refused) {
     EXPECT_EQ(refusal(source("a.pgm", "P5 2 x")), "a.pgm: the PGM header ends before its height");
     EXPECT_EQ(refusal(source("a.pgm", "P5 2 2 70000\n1234")),
               "a.pgm: maximal value 70000; a PGM has 1 to 65535");
-    EXPECT_EQ(refusal(source("a.pgm", "P5 2 2 255\n123")),
-              "a.pgm: 14 bytes, but 2 rows x 2 columns of 1 bytes after a header of 11 make 15; the "
-              "file is truncated or its size is given wrongly");
+    EXPECT_EQ(
+        refusal(source("a.pgm", "P5 2 2 255\n123")),
+        "a.pgm: 14 bytes, but 2 rows x 2 columns of 1 bytes after a header of 11 make 15; the "
+        "file is truncated or its size is given wrongly");
     EXPECT_EQ(refusal(source("a.pgm", "P5 999999999999999999 999999999999999999 255\n1")),
               "a.pgm: 999999999999999999 rows x 999999999999999999 columns are more than the "
               "2147483648 samples that are read; crop or thin it");
 }
 
 TEST_F(Import, what_is_no_raster_is_refused) {
-    EXPECT_EQ(refusal(source("a.vrt", "<VRTDataset/>")),
-              "a.vrt: unknown extension '.vrt'; known: hgt, asc, dem, dt0, dt1, dt2, img, bil, flt, "
-              "tif, tiff, png, exr, pgm, raw, r16, bin");
+    EXPECT_EQ(
+        refusal(source("a.vrt", "<VRTDataset/>")),
+        "a.vrt: unknown extension '.vrt'; known: hgt, asc, dem, dt0, dt1, dt2, img, bil, flt, "
+        "tif, tiff, png, exr, pgm, raw, r16, bin");
     TerrainSource missing;
     missing.file = folder_.path() / "missing.png";
     missing.where = "scenario.toml:4";

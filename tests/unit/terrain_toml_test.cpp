@@ -34,7 +34,8 @@ TEST(TomlFile, parses_and_remembers_lines) {
 }
 
 TEST(TomlFile, names_the_line_of_what_is_not_toml) {
-    EXPECT_EQ(message_of("a = 1\nb = = 2\n").find("s.toml:2: not TOML: "), 0U) << message_of("a = 1\nb = = 2\n");
+    EXPECT_EQ(message_of("a = 1\nb = = 2\n").find("s.toml:2: not TOML: "), 0U)
+        << message_of("a = 1\nb = = 2\n");
     EXPECT_EQ(message_of("a = 1\na = 2\n").find("s.toml:2: not TOML: "), 0U);
     EXPECT_EQ(message_of("a = \"\xff\"\n").find("s.toml:1: not TOML: "), 0U);
 }
@@ -68,7 +69,7 @@ TEST(TomlFile, brackets_dots_and_marks_in_strings_and_comments_do_not_count) {
     EXPECT_EQ(message_of("a = \"" + repeated("[.", 100) + "\\\"[[\"\n"), "no error");
     EXPECT_EQ(message_of("a = '" + repeated("[.", 100) + "'\n# " + repeated("[.", 100) + "\nb=1\n"),
               "no error");
-    EXPECT_EQ(message_of("a = \"\"\"\n" + repeated("[.\n", 100) + "\"\"\"\nb = [[\n"
-                         + repeated("[", 70)),
-              "s.toml:104: brackets nested more than 64 deep");
+    EXPECT_EQ(
+        message_of("a = \"\"\"\n" + repeated("[.\n", 100) + "\"\"\"\nb = [[\n" + repeated("[", 70)),
+        "s.toml:104: brackets nested more than 64 deep");
 }

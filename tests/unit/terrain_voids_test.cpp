@@ -20,14 +20,15 @@ TEST(VoidFill, leaves_a_whole_grid_as_it_is) {
 }
 
 TEST(VoidFill, weighs_the_four_neighbours_by_one_over_their_distance_in_metres) {
-    std::vector<float> heights = {0, 0, 6, 0,      //
+    std::vector<float> heights = {0, 0,     6,     0,  //
                                   1, kVoid, kVoid, 9,  //
-                                  0, 0, 12, 0};
+                                  0, 0,     12,    0};
     EXPECT_EQ(fill_voids(heights, 3, 4, {10, 20}), 2U);
     // West 1 at 10 m, east 9 at 20 m, north and south 0 at 20 m.
     EXPECT_EQ(heights[5], float((1.0 / 10 + 9.0 / 20) / (1.0 / 10 + 3.0 / 20)));
     // West 1 at 20 m, for the void at its side is none; east 9 at 10 m; north 6, south 12 at 20 m.
-    EXPECT_EQ(heights[6], float((1.0 / 20 + 9.0 / 10 + 6.0 / 20 + 12.0 / 20) / (3.0 / 20 + 1.0 / 10)));
+    EXPECT_EQ(heights[6],
+              float((1.0 / 20 + 9.0 / 10 + 6.0 / 20 + 12.0 / 20) / (3.0 / 20 + 1.0 / 10)));
 }
 
 TEST(VoidFill, one_valid_sample_fills_everything_in_two_passes) {
@@ -38,19 +39,20 @@ TEST(VoidFill, one_valid_sample_fills_everything_in_two_passes) {
 }
 
 TEST(VoidFill, corners_without_a_neighbour_take_the_filled_ones) {
-    std::vector<float> heights = {kVoid, kVoid, 8,  //
+    std::vector<float> heights = {kVoid, kVoid, 8,      //
                                   kVoid, kVoid, kVoid,  //
-                                  2, kVoid, kVoid};
+                                  2,     kVoid, kVoid};
     EXPECT_EQ(fill_voids(heights, 3, 3, {1, 1}), 7U);
-    EXPECT_EQ(heights[0], 5.0F);               // 8 at 2 and 2 at 2: first pass
-    EXPECT_EQ(heights[1], 8.0F);               // first pass
-    EXPECT_EQ(heights[3], 2.0F);               // first pass
+    EXPECT_EQ(heights[0], 5.0F);                    // 8 at 2 and 2 at 2: first pass
+    EXPECT_EQ(heights[1], 8.0F);                    // first pass
+    EXPECT_EQ(heights[3], 2.0F);                    // first pass
     EXPECT_EQ(heights[4], (2 + 8 + 8 + 2) / 4.0F);  // second pass: west 2, east 8, north 8, south 2
 }
 
 TEST(VoidFill, does_not_depend_on_which_way_the_grid_lies) {
     std::vector<float> heights;
-    for (int i = 0; i < 63; ++i) heights.push_back(i % 5 == 0 || i % 7 < 3 ? kVoid : float(i * i % 101));
+    for (int i = 0; i < 63; ++i)
+        heights.push_back(i % 5 == 0 || i % 7 < 3 ? kVoid : float(i * i % 101));
     std::vector<float> turned(heights.rbegin(), heights.rend());
     (void)fill_voids(heights, 7, 9, {2, 3});
     (void)fill_voids(turned, 7, 9, {2, 3});

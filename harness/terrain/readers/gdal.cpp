@@ -1,5 +1,5 @@
-// The only file that knows GDAL. Its drivers are registered one by one: those of the network, of databases
-// and of virtual files (VRT, WMS, /vsi...) are never there to be asked.
+// The only file that knows GDAL. Its drivers are registered one by one: those of the network, of
+// databases and of virtual files (VRT, WMS, /vsi...) are never there to be asked.
 
 #include "terrain/readers/module.h"
 
@@ -96,18 +96,21 @@ glm::dvec2 metres_per_radian(double latitude, const OGRSpatialReference& referen
 
 class GdalReader final : public RasterReader {
 public:
-    explicit GdalReader(const std::filesystem::path& file) : file_(std::filesystem::absolute(file)) {
+    explicit GdalReader(const std::filesystem::path& file)
+        : file_(std::filesystem::absolute(file)) {
         const ErrorText errors;
         const std::string path = file_.string();
         if (path.starts_with("/vsi")) refuse("a virtual path of GDAL; give a file on disk");
         register_drivers();
-        dataset_.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
-                                         kDrivers.data()));
-        if (!dataset_) refuse(fmt::format("is no elevation model that can be read; {}", errors.text()));
+        dataset_.reset(
+            GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers.data()));
+        if (!dataset_)
+            refuse(fmt::format("is no elevation model that can be read; {}", errors.text()));
         if (dataset_->GetRasterCount() != 1) {
-            refuse(fmt::format("{} bands; an elevation model has one (gdal_translate -b 1 takes one "
-                               "out)",
-                               dataset_->GetRasterCount()));
+            refuse(
+                fmt::format("{} bands; an elevation model has one (gdal_translate -b 1 takes one "
+                            "out)",
+                            dataset_->GetRasterCount()));
         }
         band_ = dataset_->GetRasterBand(1);
         description_.rows = dataset_->GetRasterYSize();
@@ -153,7 +156,8 @@ private:
         const std::string unit = band_->GetUnitType();
         const std::optional<double> metres = metres_per_unit(unit);
         if (!metres) {
-            description_.unit_hint = fmt::format("heights in '{}', which is no unit known here", unit);
+            description_.unit_hint =
+                fmt::format("heights in '{}', which is no unit known here", unit);
         }
         description_.vertical_scale = band_->GetScale() * metres.value_or(1);
         description_.vertical_offset = band_->GetOffset() * metres.value_or(1);
@@ -165,12 +169,13 @@ private:
         std::array<double, 6> t{};
         if (dataset_->GetGeoTransform(t.data()) != CE_None) return;
         if (t[2] != 0 || t[4] != 0) {
-            refuse(fmt::format("a rotated geotransform (terms {} and {}); warp it upright with gdalwarp",
-                               t[2], t[4]));
+            refuse(fmt::format(
+                "a rotated geotransform (terms {} and {}); warp it upright with gdalwarp", t[2],
+                t[4]));
         }
         if (!(t[1] > 0) || t[5] == 0 || !std::isfinite(t[1]) || !std::isfinite(t[5])) {
-            refuse(fmt::format("pixels of {} by {}; the width must be positive, the height not zero",
-                               t[1], t[5]));
+            refuse(fmt::format(
+                "pixels of {} by {}; the width must be positive, the height not zero", t[1], t[5]));
         }
         south_up_ = t[5] > 0;
         const glm::dvec2 pixel(t[1], std::abs(t[5]));
@@ -200,8 +205,8 @@ private:
         description_.origin = corner * metres;
     }
 
-    /// An .asc without .prj does not say what its numbers are: a thousandth of something, within the
-    /// range of longitudes and latitudes, is taken for neither.
+    /// An .asc without .prj does not say what its numbers are: a thousandth of something, within
+    /// the range of longitudes and latitudes, is taken for neither.
     [[nodiscard]] bool looks_like_degrees(glm::dvec2 corner, glm::dvec2 pixel) const {
         const glm::dvec2 far = corner + pixel * glm::dvec2(description_.columns, description_.rows);
         return pixel.x < 0.02 && pixel.y < 0.02 && std::abs(corner.x) <= 360 &&

@@ -1,5 +1,5 @@
-// The only file that knows OpenImageIO. The format is named by the extension, never guessed from the content,
-// so that no other of its readers gets a stranger's bytes.
+// The only file that knows OpenImageIO. The format is named by the extension, never guessed from
+// the content, so that no other of its readers gets a stranger's bytes.
 
 #include "terrain/readers/module.h"
 
@@ -35,7 +35,8 @@ const char* format_of(const std::filesystem::path& file) {
 }
 
 template <typename T>
-void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first, std::span<double> values) {
+void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first,
+                    std::span<double> values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
         T sample;
         std::memcpy(&sample, bytes.data() + (first + i) * sizeof(T), sizeof(T));
@@ -43,12 +44,16 @@ void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first, std:
     }
 }
 
+/// No compression of these formats packs more than a few thousand samples into a byte. A damaged header that
+/// claims more would cost gigabytes before the first row turns out to be missing.
+constexpr std::int64_t kMostSamplesPerByte = 1 << 14;
+
 class OiioReader final : public RasterReader {
 public:
     explicit OiioReader(const std::filesystem::path& file) : file_(file) {
         if (format_of(file) == std::string_view("png")) {
             const PngHeader header = check_png(file);
-            check_raster_size(file, header.height, header.width);
+            check_size(header.height, header.width);
             png_bit_depth_ = header.bit_depth;
         }
         input_ = OIIO::ImageInput::create(format_of(file));
@@ -62,17 +67,18 @@ public:
                                one_line(input_->geterror())));
         }
         if (spec_.nchannels != 1) {
-            refuse(fmt::format("{} channels; a height map has one, convert it to grey without alpha",
-                               spec_.nchannels));
+            refuse(
+                fmt::format("{} channels; a height map has one, convert it to grey without alpha",
+                            spec_.nchannels));
         }
         if (spec_.depth > 1) refuse("a volume; a height map is flat");
-        check_raster_size(file_, spec_.height, spec_.width);
+        check_size(spec_.height, spec_.width);
         description_.rows = spec_.height;
         description_.columns = spec_.width;
         choose_type();
         refuse_stretched();
-        description_.kind = fmt::format("{}, {}, through OpenImageIO", input_->format_name(),
-                                        spec_.format.c_str());
+        description_.kind =
+            fmt::format("{}, {}, through OpenImageIO", input_->format_name(), spec_.format.c_str());
     }
 
     void read_row(int row, std::span<double> values) override {
@@ -81,9 +87,11 @@ public:
         switch (type_.basetype) {
             case OIIO::TypeDesc::UINT8: return copy_as_double<std::uint8_t>(strip_, first, values);
             case OIIO::TypeDesc::INT8: return copy_as_double<std::int8_t>(strip_, first, values);
-            case OIIO::TypeDesc::UINT16: return copy_as_double<std::uint16_t>(strip_, first, values);
+            case OIIO::TypeDesc::UINT16:
+                return copy_as_double<std::uint16_t>(strip_, first, values);
             case OIIO::TypeDesc::INT16: return copy_as_double<std::int16_t>(strip_, first, values);
-            case OIIO::TypeDesc::UINT32: return copy_as_double<std::uint32_t>(strip_, first, values);
+            case OIIO::TypeDesc::UINT32:
+                return copy_as_double<std::uint32_t>(strip_, first, values);
             case OIIO::TypeDesc::INT32: return copy_as_double<std::int32_t>(strip_, first, values);
             case OIIO::TypeDesc::FLOAT: return copy_as_double<float>(strip_, first, values);
             default: return copy_as_double<double>(strip_, first, values);
@@ -95,14 +103,24 @@ private:
         throw InputError(fmt::format("{}: {}", file_.string(), what));
     }
 
+    void check_size(std::int64_t rows, std::int64_t columns) const {
+        check_raster_size(file_, rows, columns);
+        const auto bytes = std::int64_t(std::filesystem::file_size(file_));
+        if (rows * columns / kMostSamplesPerByte > bytes) {
+            refuse(fmt::format("{} rows x {} columns, but only {} bytes; it is damaged, fetch or "
+                               "convert it anew",
+                               rows, columns, bytes));
+        }
+    }
+
     void choose_type() {
         // Halves widen to float without loss; everything else is read as it lies.
         type_ = spec_.format == OIIO::TypeDesc::HALF ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT)
                                                      : spec_.format;
-        static constexpr std::array kRead = {
-            OIIO::TypeDesc::UINT8,  OIIO::TypeDesc::INT8,  OIIO::TypeDesc::UINT16,
-            OIIO::TypeDesc::INT16,  OIIO::TypeDesc::UINT32, OIIO::TypeDesc::INT32,
-            OIIO::TypeDesc::FLOAT,  OIIO::TypeDesc::DOUBLE};
+        static constexpr std::array kRead = {OIIO::TypeDesc::UINT8,  OIIO::TypeDesc::INT8,
+                                             OIIO::TypeDesc::UINT16, OIIO::TypeDesc::INT16,
+                                             OIIO::TypeDesc::UINT32, OIIO::TypeDesc::INT32,
+                                             OIIO::TypeDesc::FLOAT,  OIIO::TypeDesc::DOUBLE};
         if (std::ranges::find(kRead, type_.basetype) == kRead.end()) {
             refuse(fmt::format("samples of type {}; integers of up to 32 bits and floats are read",
                                spec_.format.c_str()));
@@ -110,8 +128,8 @@ private:
         description_.float32 = type_.basetype == OIIO::TypeDesc::FLOAT;
     }
 
-    /// OpenImageIO stretches samples of fewer bits than their type to the type's full range, and turns
-    /// "white is zero" over. Heights must come as they were written, so these are refused.
+    /// OpenImageIO stretches samples of fewer bits than their type to the type's full range, and
+    /// turns "white is zero" over. Heights must come as they were written, so these are refused.
     void refuse_stretched() const {
         int bits = spec_.get_int_attribute("oiio:BitsPerSample", int(spec_.format.size() * 8));
         if (png_bit_depth_ > 0) bits = png_bit_depth_;
@@ -128,7 +146,8 @@ private:
         const int height = tiled ? spec_.tile_height : 64;
         strip_begin_ = row - row % height;
         strip_end_ = std::min(strip_begin_ + height, spec_.height);
-        strip_.resize(std::size_t(strip_end_ - strip_begin_) * std::size_t(spec_.width) * type_.size());
+        strip_.resize(std::size_t(strip_end_ - strip_begin_) * std::size_t(spec_.width) *
+                      type_.size());
         const int top = spec_.y + strip_begin_;
         const int bottom = spec_.y + strip_end_;
         const bool read =

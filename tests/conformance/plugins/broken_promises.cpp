@@ -1,4 +1,5 @@
-// Methods that break one promise each, on purpose: the conformance suite must notice every one of them.
+// Methods that break one promise each, on purpose: the conformance suite must notice every one of
+// them.
 
 #include <cmath>
 #include <cstdlib>
@@ -66,7 +67,8 @@ private:
 class DependsOnThePast : public GridMethod {
 public:
     explicit DependsOnThePast(const Params& params) : GridMethod(params) {
-        // The process's environment outlives the method: an honest way to keep a fault without a global.
+        // The process's environment outlives the method: an honest way to keep a fault without a
+        // global.
         const char* before = std::getenv("LODBENCH_TEST_INSTANCES");
         instance_ = before == nullptr ? 0 : std::atoi(before) + 1;
         setenv("LODBENCH_TEST_INSTANCES", std::to_string(instance_).c_str(), 1);
@@ -145,7 +147,8 @@ class NeedsSquare : public GridMethod {
 public:
     using GridMethod::GridMethod;
     void prepare(const Terrain& terrain, gl::Device& device) override {
-        if (terrain.info().rows != terrain.info().columns) throw ContractError("the terrain is not square");
+        if (terrain.info().rows != terrain.info().columns)
+            throw ContractError("the terrain is not square");
         GridMethod::prepare(terrain, device);
     }
 };

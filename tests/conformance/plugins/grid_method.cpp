@@ -31,8 +31,9 @@ void GridMethod::upload(gl::Device& device) {
         }
     }
     index_count_ = int(indices.size());
-    program_ = gl::Program(device, "grid", embedded_shaders(),
-                           {{GL_VERTEX_SHADER, "grid.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
+    program_ =
+        gl::Program(device, "grid", embedded_shaders(),
+                    {{GL_VERTEX_SHADER, "grid.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
     vertices_ = gl::Buffer(device, "grid: vertices", std::span<const glm::vec3>(vertices));
     indices_ = gl::Buffer(device, "grid: indices", std::span<const std::uint32_t>(indices));
     array_ = gl::VertexArray(device, "grid");
@@ -50,8 +51,8 @@ void GridMethod::draw(const View&) {
 
 void GridMethod::draw_grid(const glm::vec3& shift, int left_out) {
     program_.set("shift", shift);
-    device_->draw_elements(program_, array_, GL_TRIANGLES, index_count_ - 3 * left_out, GL_UNSIGNED_INT,
-                           3 * sizeof(std::uint32_t) * std::size_t(left_out));
+    device_->draw_elements(program_, array_, GL_TRIANGLES, index_count_ - 3 * left_out,
+                           GL_UNSIGNED_INT, 3 * sizeof(std::uint32_t) * std::size_t(left_out));
 }
 
 void GridMethod::release(gl::Device&) {

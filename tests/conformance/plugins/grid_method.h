@@ -1,6 +1,6 @@
 #pragma once
-// A method that keeps every promise: all samples, all triangles, each frame. The broken ones derive from it
-// and break one promise each.
+// A method that keeps every promise: all samples, all triangles, each frame. The broken ones derive
+// from it and break one promise each.
 
 #include <glm/vec3.hpp>
 
