@@ -100,7 +100,9 @@ void set_type(Sidecar& sidecar, const Entry& entry) {
     for (const auto& [name, type] : kTypes) {
         if (text == name) sidecar.type = type;
     }
-    if (!sidecar.type) entry.refuse(fmt::format("= {}; known: int16, uint16, float32", base::printable(text)));
+    if (!sidecar.type) {
+        entry.refuse(fmt::format("= {}; known: int16, uint16, float32", base::printable(text)));
+    }
 }
 
 void set_endian(Sidecar& sidecar, const Entry& entry) {

@@ -44,8 +44,8 @@ void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first,
     }
 }
 
-/// No compression of these formats packs more than a few thousand samples into a byte. A damaged header that
-/// claims more would cost gigabytes before the first row turns out to be missing.
+/// No compression of these formats packs more than a few thousand samples into a byte. A damaged
+/// header that claims more would cost gigabytes before the first row turns out to be missing.
 constexpr std::int64_t kMostSamplesPerByte = 1 << 14;
 
 class OiioReader final : public RasterReader {
@@ -107,9 +107,10 @@ private:
         check_raster_size(file_, rows, columns);
         const auto bytes = std::int64_t(std::filesystem::file_size(file_));
         if (rows * columns / kMostSamplesPerByte > bytes) {
-            refuse(fmt::format("{} rows x {} columns, but only {} bytes; it is damaged, fetch or "
-                               "convert it anew",
-                               rows, columns, bytes));
+            refuse(
+                fmt::format("{} rows x {} columns, but only {} bytes; it is damaged, fetch or "
+                            "convert it anew",
+                            rows, columns, bytes));
         }
     }
 
