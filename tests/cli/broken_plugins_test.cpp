@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cli/run_lodbench.h"
+#include "sanitizers/sanitizers.h"
 
 namespace lodbench::test {
 namespace {
@@ -53,7 +54,7 @@ TEST(BrokenPlugins, lose_their_own_cell_only_with_status_and_reason) {
         arguments.insert(arguments.end(), {"--method", expected.method, "--plugin-dir",
                                            broken_plugin_folder(expected.plugin)});
     }
-    const Finished finished = run_lodbench(arguments, folder.path());
+    const Finished finished = run_lodbench(arguments, folder.path(), leave_signals_to_the_system);
     EXPECT_EQ(finished.status, 3) << finished.output;
 
     std::map<std::string, Json::Value> cells;

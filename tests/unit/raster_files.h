@@ -67,17 +67,19 @@ inline std::string packed16(const std::vector<int>& samples, bool big_endian) {
     return bytes.str();
 }
 
+/// CRC-32 of PNG chunks.
+inline std::uint32_t crc32(std::string_view bytes) {
+    std::uint32_t crc = 0xFFFFFFFFU;
+    for (const unsigned char byte : bytes) {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0);
+    }
+    return ~crc;
+}
+
 /// PNG of stored (uncompressed) blocks. `rows` holds each row's packed bytes.
 inline std::string png(std::uint32_t width, std::uint32_t height, int bit_depth, int colour_type,
                        const std::vector<std::string>& rows) {
-    const auto crc32 = [](std::string_view bytes) {
-        std::uint32_t crc = 0xFFFFFFFFU;
-        for (const unsigned char byte : bytes) {
-            crc ^= byte;
-            for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0);
-        }
-        return ~crc;
-    };
     std::string file = "\x89PNG\r\n\x1a\n";
     const auto chunk = [&](std::string_view type, const std::string& data) {
         const std::string body = std::string(type) + data;
