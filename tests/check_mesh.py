@@ -2,7 +2,7 @@
 """Checks a mesh that `lodbench mesh` wrote, sharing no code with lodbench (numpy only).
 
 check_mesh.py MESH.ply [--watertight] [--covers-terrain] [--same-surface FULL_GRID.ply [--within METRES]]
-              [--shares-vertices] [--max-triangles N]
+              [--shares-vertices BORDER_EDGES] [--max-triangles N]
 
 Always: the header is complete, every number is finite, every index is in range, and the camera's fields
 agree with its matrices: a vertex projected through the matrices lands on the pixel that the position, the
@@ -15,9 +15,9 @@ orientation and the field of view give.
                     left out.
 --covers-terrain    the mesh's rectangle contains the terrain's extent.
 --same-surface F    at each sample of the terrain the mesh has F's height, to float rounding and --within.
---shares-vertices   for meshes off the grid: no edge is used more than twice, and edges that are used once
-                    form closed loops (each vertex has an even number of them): neighbours share their
-                    vertices to the bit.
+--shares-vertices N for meshes off the grid: no edge is used twice in one direction, and exactly N are used
+                    once. N is what the method's grid has on its border; a seam where neighbours do not
+                    share their vertices to the bit adds two for each of its edges.
 Prints one line; exit status 0 when all holds, 1 with the reasons otherwise.
 """
 import argparse
@@ -242,16 +242,15 @@ def check_same_surface(mesh, other, within):
     return f"same surface to {difference.max():.3g} m ({allowed:.3g} m are allowed)"
 
 
-def check_shares(mesh):
+def check_shares(mesh, border_edges):
     faces = mesh.solid_faces()
     require(len(faces) > 0, "no triangle with three vertices")
     edges, forth, back = edges_of(faces)
-    uses = forth + back
-    require((uses <= 2).all(), f"{int((uses > 2).sum())} edges are used more than twice")
-    once = edges[uses == 1]
-    degree = np.bincount(once.reshape(-1), minlength=len(mesh.vertices))
-    require((degree % 2 == 0).all(), f"{int((degree % 2 == 1).sum())} vertices end an open seam")
-    return f"{len(faces)} triangles share vertices, {len(once)} border edges"
+    require((forth <= 1).all() and (back <= 1).all(),
+            f"{int(((forth > 1) | (back > 1)).sum())} edges are used twice in one direction")
+    once = int((forth + back == 1).sum())
+    require(once == border_edges, f"{once} edges are used once, the border has {border_edges}")
+    return f"{len(faces)} triangles share vertices, {once} border edges"
 
 
 def main():
@@ -261,7 +260,7 @@ def main():
     parser.add_argument("--covers-terrain", action="store_true")
     parser.add_argument("--same-surface", metavar="FULL_GRID.ply")
     parser.add_argument("--within", type=float, default=0.0)
-    parser.add_argument("--shares-vertices", action="store_true")
+    parser.add_argument("--shares-vertices", type=int, metavar="BORDER_EDGES")
     parser.add_argument("--max-triangles", type=int)
     arguments = parser.parse_args()
     try:
@@ -273,8 +272,8 @@ def main():
             said.append(check_covers(mesh))
         if arguments.same_surface:
             said.append(check_same_surface(mesh, Mesh(arguments.same_surface), arguments.within))
-        if arguments.shares_vertices:
-            said.append(check_shares(mesh))
+        if arguments.shares_vertices is not None:
+            said.append(check_shares(mesh, arguments.shares_vertices))
         if arguments.max_triangles is not None:
             require(len(mesh.solid_faces()) <= arguments.max_triangles,
                     f"{len(mesh.solid_faces())} triangles, at most {arguments.max_triangles} allowed")
