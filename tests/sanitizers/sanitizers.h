@@ -18,6 +18,9 @@ inline constexpr bool kThreadSanitizer = true;
 inline constexpr bool kThreadSanitizer = false;
 #endif
 
+/// What a limit of time is multiplied by, where it must not be reached by honest work.
+inline constexpr int kSlowness = kAddressSanitizer || kThreadSanitizer ? 10 : 1;
+
 /// The programs that are started from here on die of the signals they get. A sanitizer would
 /// otherwise take a segmentation fault for its own finding, report it and exit with a status.
 inline void leave_signals_to_the_system() {
