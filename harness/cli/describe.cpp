@@ -28,10 +28,10 @@ void print(const run::MethodInfo& method) {
     fmt::print("version    {}\nplugin     {}\n", method.version, method.plugin.string());
     fmt::print("quality    {}\n",
                method.quality_knob.empty() ? "exact: no knob" : method.quality_knob);
-    fmt::print("bound      {}\n",
+    fmt::print("claims     {}\n",
                method.claimed_bound.empty()
-                   ? "none claimed"
-                   : method.claimed_bound + " bounds the screen error in pixels");
+                   ? "no bound of the screen error"
+                   : method.claimed_bound + " bounds the screen error in pixels (its claim, not a measurement)");
     for (const std::string& name : method.gl_extensions) fmt::print("needs      {}\n", name);
     if (method.params.empty()) return;
     fmt::print("parameters\n");

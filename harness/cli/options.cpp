@@ -45,6 +45,23 @@ void add_size(CLI::App& command, std::optional<Viewport>& size) {
         ->type_name("WIDTHxHEIGHT");
 }
 
+CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
+    // CLI11 would wrap a negative number round.
+    return command
+        .add_option_function<std::string>(
+            "--seed",
+            [&seed](const std::string& text) {
+                const char* end = text.data() + text.size();
+                const auto read = std::from_chars(text.data(), end, seed);
+                if (read.ec != std::errc() || read.ptr != end) {
+                    throw InputError(fmt::format(
+                        "--seed {}: expected a whole number from 0 to 18446744073709551615", text));
+                }
+            },
+            help)
+        ->type_name("UINT");
+}
+
 std::vector<run::PluginListing> find_plugins(
     const std::vector<std::filesystem::path>& plugin_dirs) {
     return run::list_plugins(run::plugin_folders(plugin_dirs));

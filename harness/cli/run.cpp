@@ -153,8 +153,7 @@ void add_run(CLI::App& app, int& status) {
     auto* frames = command->add_option("--frames", options->frames, "frames of the flight")
                        ->check(CLI::Range(1, 1000000));
     add_size(*command, request.overrides.viewport);
-    auto* seed =
-        command->add_option("--seed", options->seed, "seed of the order and of random choices");
+    auto* seed = add_seed(*command, options->seed, "seed of the order and of random choices");
     auto* repeat = command->add_option("--repeat", options->repetitions, "repetitions of each cell")
                        ->check(CLI::Range(1, 10000));
     add_device(*command, request.device);

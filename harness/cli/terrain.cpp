@@ -52,7 +52,7 @@ void add_shape(CLI::App& command, Options& options) {
     command.add_option("--rows", source.rows, "Rows of a synthetic terrain")->capture_default_str();
     command.add_option("--columns", source.columns, "Columns of a synthetic terrain")
         ->capture_default_str();
-    command.add_option("--seed", source.seed, "Seed of a synthetic terrain")->capture_default_str();
+    add_seed(command, source.seed, "Seed of a synthetic terrain");
     add_repeated(command, "--set", options.settings,
                  "A parameter of the synthetic form, as key=value");
 }

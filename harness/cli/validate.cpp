@@ -166,8 +166,7 @@ void add_validate(CLI::App& app, int& status) {
     command->add_option("--method", options->method, "only this method of the plugin");
     add_repeated(*command, "--test", options->tests, "only this test");
     add_repeated(*command, "--set", options->settings, "[METHOD.]PARAM=VALUE for all tests");
-    command->add_option("--seed", options->seed,
-                        "random cameras and frame numbers come from it; 1");
+    add_seed(*command, options->seed, "random cameras and frame numbers come from it; 1");
     add_device(*command, options->device);
     command
         ->add_option("--time-factor", options->time_factor, "stretches each test's time limit; 1")

@@ -91,7 +91,7 @@ public:
         if (known) {
             take_up();
         } else {
-            start();
+            discarding_what_is_refused([&] { start(); });
         }
         outcome_.seed = plan_.seed;
         for (const std::string& warning : outcome_.warnings) observer_.warned(warning);
@@ -99,9 +99,11 @@ public:
 
     CampaignOutcome fly() {
         try {
-            for (std::size_t i = 0; i < plan_.cells.size(); ++i) {
-                if (!finished_.contains(plan_.cells[i].spec.id)) fly_cell_at(i);
-            }
+            discarding_what_is_refused([&] {
+                for (std::size_t i = 0; i < plan_.cells.size(); ++i) {
+                    if (!finished_.contains(plan_.cells[i].spec.id)) fly_cell_at(i);
+                }
+            });
             write_summary();
         } catch (const EnvironmentError& error) {
             outcome_.error = error.what();
@@ -110,6 +112,38 @@ public:
     }
 
 private:
+    /// Bad input that is found before the first cell is finished leaves nothing behind: the same command
+    /// can be given again once the input is mended.
+    template <typename Work>
+    void discarding_what_is_refused(const Work& work) {
+        try {
+            work();
+        } catch (const InputError&) {
+            if (outcome_.cells.empty()) folder_.discard();
+            throw;
+        }
+    }
+
+    /// Cells of one run compare methods on one terrain: a file that changed between start and resume, the
+    /// terrain's or the plugin's, ends the run.
+    void refuse_changed_input(const Json::Value& record) const {
+        const auto compare = [&](const char* with, const char* field, const char* what) {
+            for (const Json::Value& cell : outcome_.cells) {
+                if (cell[with] != record[with] || cell[field].isNull() || record[field].isNull() ||
+                    cell[field] == record[field]) {
+                    continue;
+                }
+                throw InputError(fmt::format(
+                    "{} '{}' has changed since the run began: its checksum was {} in cell {} and is {}; "
+                    "restore the file or begin anew with another --out",
+                    what, record[with].asString(), cell[field].asString(), cell["cell"].asString(),
+                    record[field].asString()));
+            }
+        };
+        compare("scenario", "terrain_checksum", "the terrain of scenario");
+        compare("method", "plugin_checksum", "the plugin of method");
+    }
+
     void start() {
         const std::vector<PluginListing> plugins =
             list_plugins(plugin_folders(request_.plugin_dirs));
@@ -178,6 +212,7 @@ private:
         if (!result.input_error.empty()) throw InputError(result.input_error);
         const Json::Value record =
             cell_record(cell.spec, cell.scenario, cell.params, result, scenario.measure.budget_ms);
+        refuse_changed_input(record);
         folder_.add_cell(cell.spec.id, record, frames_csv(result.frames));
         finished_.insert(cell.spec.id);
         outcome_.cells.push_back(record);

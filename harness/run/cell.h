@@ -61,6 +61,7 @@ struct CellResult {
     Counters counters;       ///< means over the frames of the lockstep replay
     std::string depth_hash;  ///< at the randomly chosen frame, lockstep
     std::string terrain_name, terrain_checksum;
+    std::string plugin_checksum;  ///< of the plugin file: 16 hex digits
     std::optional<double> claimed_px;
     std::vector<std::string> warnings;
     // Context as the child saw it.

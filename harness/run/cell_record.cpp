@@ -249,6 +249,7 @@ std::string write_result(const CellResult& result) {
     json["depth_hash"] = result.depth_hash;
     json["terrain_name"] = result.terrain_name;
     json["terrain_checksum"] = result.terrain_checksum;
+    json["plugin_checksum"] = result.plugin_checksum;
     json["claimed_px"] = number(result.claimed_px);
     json["warnings"] = texts(result.warnings);
     json["gl_vendor"] = result.gl_vendor;
@@ -292,6 +293,7 @@ CellResult read_result(std::string_view text, const std::string& where) {
         result.depth_hash = report::get_string(json, "depth_hash", where);
         result.terrain_name = report::get_string(json, "terrain_name", where);
         result.terrain_checksum = report::get_string(json, "terrain_checksum", where);
+        result.plugin_checksum = report::get_string(json, "plugin_checksum", where);
         result.claimed_px = read_number(json["claimed_px"]);
         for (const Json::Value& warning : report::get_array(json, "warnings", where)) {
             result.warnings.push_back(warning.asString());
@@ -357,6 +359,7 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["depth_hash"] = text_or_null(result.depth_hash);
     json["terrain"] = text_or_null(result.terrain_name);
     json["terrain_checksum"] = text_or_null(result.terrain_checksum);
+    json["plugin_checksum"] = text_or_null(result.plugin_checksum);
     json["timer_verdict"] = text_or_null(result.timer_verdict);
     json["warmup_frames"] = result.warmup_frames;
     json["frames_in_flight"] = result.frames_in_flight;

@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "measure/timer_verdict.h"
 #include "report/png.h"
+#include "report/results.h"
 #include "run/cell.h"
 #include "run/stage.h"
 #include "run/timing.h"
@@ -47,6 +48,12 @@ std::optional<std::uint64_t> peak_rss_bytes() {
         if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
     }
     return std::nullopt;
+}
+
+std::string file_checksum(const std::filesystem::path& file) {
+    base::Fnv1a hash;
+    for (const char byte : report::read_text(file)) hash.add(static_cast<unsigned char>(byte));
+    return hash.hex();
 }
 
 class Flight {
@@ -116,6 +123,7 @@ void Flight::open() {
     signs_.enter(Call::load_terrain);
     terrain_ = terrain::load_terrain(scenario_.terrain);
     path_ = scenario::make_path(scenario_.path, scenario_.frames, scenario_.rate_hz, *terrain_);
+    result_.plugin_checksum = file_checksum(spec_.plugin);
     result_.terrain_name = terrain_->info().name;
     result_.terrain_checksum = terrain_->info().checksum;
     signs_.enter(Call::start);
@@ -234,6 +242,11 @@ void Flight::fly_in_lockstep() {
     for (const auto& [name, sum] : sums) {
         result_.counters.emplace_back(name, sum / scenario_.frames);
     }
+    const auto empty = std::ranges::count(result_.frames, 0U, &FrameRecord::triangles);
+    if (empty > 0) {
+        result_.warnings.push_back(
+            fmt::format("drew no triangle in {} of {} frames", empty, scenario_.frames));
+    }
     result_.gpu_bytes = stage_->method_gpu_bytes();
 }
 
@@ -248,6 +261,13 @@ void Flight::measure_frame(FrameRecord& record) {
         throw MethodFailure(
             fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
                         spec_.plugin.filename().string(), broken, surface.vertices.size()));
+    }
+    if (surface.triangle_count() != record.triangles) {
+        throw MethodFailure(fmt::format(
+            "draw of plugin {} generated {} triangles, of which {} went through gl::Device: draw calls "
+            "must go through it",
+            spec_.plugin.filename().string(), record.triangles.value_or(0),
+            surface.triangle_count()));
     }
     record.triangles_nondegenerate = measure::nondegenerate_count(surface);
 }
@@ -284,6 +304,9 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
         result.status = CellStatus::failed;
         result.reason = error.what() + where();
     }
+    // A plugin's words may hold anything; a reason is one line.
+    std::ranges::replace_if(
+        result.reason, [](unsigned char c) { return c < 0x20; }, ' ');
     if (result.status != CellStatus::ok) result.frames.clear();
     return result;
 }

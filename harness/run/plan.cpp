@@ -156,7 +156,17 @@ void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {
 Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plugins) {
     const std::map<std::string, MethodInfo> methods = methods_of(plugins);
     std::vector<CommandSetting> command;
-    for (const std::string& text : request.settings) command.push_back(read_setting(text));
+    for (const std::string& text : request.settings) {
+        CommandSetting setting = read_setting(text);
+        for (const CommandSetting& other : command) {
+            if (other.method != setting.method || other.parameter != setting.parameter) continue;
+            throw InputError(fmt::format(
+                "{}: {}.{} is set twice, first by {}; to sweep it, give a list: --set {}.{}=A,B",
+                setting.where, setting.method, setting.parameter, other.where, setting.method,
+                setting.parameter));
+        }
+        command.push_back(std::move(setting));
+    }
     for (const std::string& id : request.methods) (void)find_method(plugins, id, "--method " + id);
 
     Plan plan;

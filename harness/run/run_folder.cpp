@@ -63,6 +63,14 @@ bool RunFolder::holds_a_run() const {
     return fs::exists(path_ / "run.json") || fs::exists(path_ / "cells.jsonl");
 }
 
+void RunFolder::discard() {
+    std::error_code ignored;
+    for (const char* part : {"scenarios", "frames", "logs", "shots", "run.json", ".lock"}) {
+        fs::remove_all(path_ / part, ignored);
+    }
+    fs::remove(path_, ignored);  // fails, as it should, where something else lies in it
+}
+
 std::vector<Json::Value> RunFolder::repair() {
     const fs::path file = path_ / "cells.jsonl";
     std::vector<Json::Value> cells;

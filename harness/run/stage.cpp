@@ -73,13 +73,18 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
     allocated_bytes_ += std::int64_t(device_->allocated_bytes() - allocated);
     peak_bytes_ = std::max(peak_bytes_, allocated_bytes_);
     uploaded_bytes_ += device_->uploaded_bytes() - uploaded;
-    if (const auto errors = device_->take_errors(); !errors.empty()) {
+    auto errors = device_->take_errors();
+    // A method that switched the driver's messages off is caught by the error flag.
+    if (check_state_ && glGetError() != GL_NO_ERROR && errors.empty()) {
+        errors.emplace_back("glGetError says so, the debug messages do not");
+    }
+    if (!errors.empty()) {
         throw MethodFailure(fmt::format("{} of plugin {} raised {} GL error{}, the first: {}",
                                         name_of(call), plugin_name_, errors.size(),
                                         errors.size() == 1 ? "" : "s", errors.front()));
     }
     if (before) {
-        const auto differences = gl::PipelineState::capture().differences(*before);
+        const auto differences = before->differences(gl::PipelineState::capture());
         if (!differences.empty()) {
             before->restore();
             throw MethodFailure(fmt::format("{} of plugin {} left GL state changed: {}",

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "cli/run_lodbench.h"
+#include "report/results.h"
 #include "unit/raster_files.h"
 
 namespace lodbench::test {
@@ -35,8 +36,8 @@ protected:
     }
     [[nodiscard]] fs::path out() const { return folder_.path() / "out"; }
 
-    /// Exit status 2, one message with all the parts, and no cell; once `mend` has run, --resume
-    /// flies all.
+    /// Exit status 2, one message with all the parts, and nothing left behind; once `mend` has run, the
+    /// same command flies all.
     template <typename Mend>
     void expect_refused_until_mended(const std::string& terrain,
                                      const std::vector<std::string>& parts,
@@ -45,9 +46,9 @@ protected:
         EXPECT_EQ(refused.status, 2) << refused.output;
         for (const std::string& part : parts) EXPECT_THAT(refused.output, HasSubstr(part));
         EXPECT_EQ(std::ranges::count(refused.output, '\n'), 1) << refused.output;
-        EXPECT_TRUE(cells_of(out()).empty());
+        EXPECT_FALSE(fs::exists(out())) << "the same command must do once the file is mended";
         mend();
-        const Finished resumed = run(terrain, {"--resume"});
+        const Finished resumed = run(terrain);
         EXPECT_EQ(resumed.status, 0) << resumed.output;
         std::set<std::string> cells;
         for (const Json::Value& cell : cells_of(out())) {
@@ -111,6 +112,8 @@ TEST_F(BadTerrain, mistakes_of_usage_end_with_status_2_and_leave_no_folder) {
         {{"--set", "lindstrom.tau=far"}, "far"},
         {{"--set", "pgm.grid=24"}, "'pgm' is not flown in this run"},
         {{"--size", "0x24"}, "--size 0x24: expected WIDTHxHEIGHT"},
+        {{"--seed", "-1"}, "--seed -1: expected a whole number"},
+        {{"--set", "lindstrom.tau=1", "--set", "lindstrom.tau=2"}, "lindstrom.tau is set twice"},
         {{"--frames", "0"}, "--frames"},
         {{"--repeat", "0"}, "--repeat"},
     };
@@ -118,9 +121,28 @@ TEST_F(BadTerrain, mistakes_of_usage_end_with_status_2_and_leave_no_folder) {
         const Finished finished = run("heights.raw", arguments);
         EXPECT_EQ(finished.status, 2) << finished.output;
         EXPECT_THAT(finished.output, HasSubstr(message));
-        EXPECT_FALSE(fs::exists(out() / "run.json")) << message;
-        EXPECT_TRUE(cells_of(out()).empty());
+        EXPECT_FALSE(fs::exists(out())) << message;
     }
+}
+
+TEST_F(BadTerrain, terrain_that_changes_before_a_resume_is_refused_with_both_checksums) {
+    write_heights(7);
+    ASSERT_EQ(run("heights.raw").status, 0);
+    const std::vector<Json::Value> cells = cells_of(out());
+    ASSERT_EQ(cells.size(), 4U);
+    // As if killed before the last cell.
+    const fs::path file = out() / "cells.jsonl";
+    const std::string text = report::read_text(file);
+    report::write_whole(file, text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+    write_heights(8);
+    const Finished resumed = run_lodbench({"run", "--resume", "--out", out().string()}, folder_.path());
+    EXPECT_EQ(resumed.status, 2) << resumed.output;
+    EXPECT_THAT(resumed.output, HasSubstr("the terrain of scenario 'bad' has changed"));
+    EXPECT_THAT(resumed.output, HasSubstr(cells[0]["terrain_checksum"].asString()));
+    EXPECT_EQ(cells_of(out()).size(), 3U) << "finished cells are kept";
+    write_heights(7);
+    EXPECT_EQ(run_lodbench({"run", "--resume", "--out", out().string()}, folder_.path()).status, 0);
+    EXPECT_EQ(cells_of(out()).size(), 4U);
 }
 
 TEST_F(BadTerrain, method_that_fails_ends_with_status_3_and_keeps_the_others) {
