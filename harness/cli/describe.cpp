@@ -31,7 +31,8 @@ void print(const run::MethodInfo& method) {
     fmt::print("claims     {}\n",
                method.claimed_bound.empty()
                    ? "no bound of the screen error"
-                   : method.claimed_bound + " bounds the screen error in pixels (its claim, not a measurement)");
+                   : method.claimed_bound +
+                         " bounds the screen error in pixels (its claim, not a measurement)");
     for (const std::string& name : method.gl_extensions) fmt::print("needs      {}\n", name);
     if (method.params.empty()) return;
     fmt::print("parameters\n");

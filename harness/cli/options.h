@@ -27,7 +27,8 @@ void add_device(CLI::App& command, std::string& device);
 /// --size; throws InputError while the command line is read.
 void add_size(CLI::App& command, std::optional<Viewport>& size);
 
-/// --seed, any whole number of 64 bits without a sign; throws InputError while the command line is read.
+/// --seed, any whole number of 64 bits without a sign; throws InputError while the command line is
+/// read.
 CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help);
 
 /// What is found in `plugin_dirs` and in the usual folders.

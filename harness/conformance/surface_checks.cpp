@@ -182,17 +182,26 @@ void origin_does_not_matter(const Subject& subject) {
     constexpr int kCameras = 4;
     // Whole metres, so that moving the camera along is exact: its position keeps 2^-29 m there.
     const glm::dvec2 far_away(1e7, -1e7);
-    Session here(subject, make_terrain("ridged", 129, 129));
-    Session there(subject, make_terrain("ridged", 129, 129, far_away));
-    Random random(subject.seed);
+    // One after the other: a thread has one context.
+    const auto capture_all = [&](const glm::dvec2& origin) {
+        Session session(subject, make_terrain("ridged", 129, 129, origin));
+        const TerrainPointer unmoved = make_terrain("ridged", 129, 129);
+        Random random(subject.seed);
+        std::vector<measure::CapturedSurface> captures;
+        for (int i = 0; i < kCameras; ++i) {
+            Camera camera = random_camera(random, unmoved->info());
+            camera.position = glm::round(camera.position * 1024.0) / 1024.0;
+            camera.position += glm::dvec3(origin, 0);
+            session.select(camera, i);
+            captures.push_back(session.capture());
+        }
+        return captures;
+    };
+    const auto at_origin = capture_all({0, 0});
+    const auto moved_away = capture_all(far_away);
     for (int i = 0; i < kCameras; ++i) {
-        Camera camera = random_camera(random, here.terrain());
-        camera.position = glm::round(camera.position * 1024.0) / 1024.0;
-        here.select(camera, i);
-        const auto expected = here.capture();
-        camera.position += glm::dvec3(far_away, 0);
-        there.select(camera, i);
-        const auto found = there.capture();
+        const measure::CapturedSurface& expected = at_origin[std::size_t(i)];
+        const measure::CapturedSurface& found = moved_away[std::size_t(i)];
         const std::string where = fmt::format("camera {} of seed {}", i, subject.seed);
         if (expected.triangle_count() != found.triangle_count()) {
             throw PromiseBroken(

@@ -112,8 +112,8 @@ public:
     }
 
 private:
-    /// Bad input that is found before the first cell is finished leaves nothing behind: the same command
-    /// can be given again once the input is mended.
+    /// Bad input that is found before the first cell is finished leaves nothing behind: the same
+    /// command can be given again once the input is mended.
     template <typename Work>
     void discarding_what_is_refused(const Work& work) {
         try {
@@ -124,8 +124,8 @@ private:
         }
     }
 
-    /// Cells of one run compare methods on one terrain: a file that changed between start and resume, the
-    /// terrain's or the plugin's, ends the run.
+    /// Cells of one run compare methods on one terrain: a file that changed between start and
+    /// resume, the terrain's or the plugin's, ends the run.
     void refuse_changed_input(const Json::Value& record) const {
         const auto compare = [&](const char* with, const char* field, const char* what) {
             for (const Json::Value& cell : outcome_.cells) {
@@ -133,11 +133,12 @@ private:
                     cell[field] == record[field]) {
                     continue;
                 }
-                throw InputError(fmt::format(
-                    "{} '{}' has changed since the run began: its checksum was {} in cell {} and is {}; "
-                    "restore the file or begin anew with another --out",
-                    what, record[with].asString(), cell[field].asString(), cell["cell"].asString(),
-                    record[field].asString()));
+                throw InputError(
+                    fmt::format("{} '{}' has changed since the run began: its checksum was {} in "
+                                "cell {} and is {}; "
+                                "restore the file or begin anew with another --out",
+                                what, record[with].asString(), cell[field].asString(),
+                                cell["cell"].asString(), record[field].asString()));
             }
         };
         compare("scenario", "terrain_checksum", "the terrain of scenario");

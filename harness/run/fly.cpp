@@ -263,11 +263,12 @@ void Flight::measure_frame(FrameRecord& record) {
                         spec_.plugin.filename().string(), broken, surface.vertices.size()));
     }
     if (surface.triangle_count() != record.triangles) {
-        throw MethodFailure(fmt::format(
-            "draw of plugin {} generated {} triangles, of which {} went through gl::Device: draw calls "
-            "must go through it",
-            spec_.plugin.filename().string(), record.triangles.value_or(0),
-            surface.triangle_count()));
+        throw MethodFailure(
+            fmt::format("draw of plugin {} generated {} triangles, of which {} went through "
+                        "gl::Device: draw calls "
+                        "must go through it",
+                        spec_.plugin.filename().string(), record.triangles.value_or(0),
+                        surface.triangle_count()));
     }
     record.triangles_nondegenerate = measure::nondegenerate_count(surface);
 }

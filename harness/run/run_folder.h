@@ -23,8 +23,8 @@ public:
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] bool holds_a_run() const;
 
-    /// Takes back what this object and a run that was refused before its first cell have made; the folder
-    /// itself goes too where it holds nothing else.
+    /// Takes back what this object and a run that was refused before its first cell have made; the
+    /// folder itself goes too where it holds nothing else.
     void discard();
 
     /// The objects of cells.jsonl after a repair: a line that a killed writer left unfinished is

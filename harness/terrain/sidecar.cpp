@@ -80,7 +80,8 @@ private:
 
 void set_spacing(Sidecar& sidecar, const Entry& entry) {
     if (const auto both = entry.pair()) {
-        if (!(both->first > 0 && both->second > 0)) entry.refuse("must be greater than 0 on both axes");
+        if (!(both->first > 0 && both->second > 0))
+            entry.refuse("must be greater than 0 on both axes");
         sidecar.spacing_x = both->first;
         sidecar.spacing_y = both->second;
     } else {
@@ -126,16 +127,12 @@ constexpr std::pair<std::string_view, Setter> kKeys[] = {
      [](Sidecar& sidecar, const Entry& entry) { sidecar.vertical_offset = entry.finite(); }},
     {"no_data",
      [](Sidecar& sidecar, const Entry& entry) { sidecar.no_data = entry.number_or_nan(); }},
-    {"voids_filled",
-     [](Sidecar& sidecar, const Entry& entry) {
-         sidecar.voids_filled = entry.integer(0, kMaxSide);
-     }},
+    {"voids_filled", [](Sidecar& sidecar,
+                        const Entry& entry) { sidecar.voids_filled = entry.integer(0, kMaxSide); }},
     {"rows",
      [](Sidecar& sidecar, const Entry& entry) { sidecar.rows = int(entry.integer(2, kMaxSide)); }},
-    {"columns",
-     [](Sidecar& sidecar, const Entry& entry) {
-         sidecar.columns = int(entry.integer(2, kMaxSide));
-     }},
+    {"columns", [](Sidecar& sidecar,
+                   const Entry& entry) { sidecar.columns = int(entry.integer(2, kMaxSide)); }},
     {"type", set_type},
     {"endian", set_endian},
 };

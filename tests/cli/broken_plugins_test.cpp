@@ -42,7 +42,8 @@ constexpr Expectation kExpectations[] = {
      "exceeded the memory limit of 700 MiB in draw of plugin allocates.so, frame 0 of the timing "
      "replay"},
     {"leaves_state", "leaves-state", "failed",
-     "draw of plugin leaves_state.so left GL state changed: GL_DEPTH_TEST: expected enabled, found disabled"},
+     "draw of plugin leaves_state.so left GL state changed: GL_DEPTH_TEST: expected enabled, found "
+     "disabled"},
     {"raises_gl_error", "raises-gl-error", "failed",
      "draw of plugin raises_gl_error.so raised 1 GL error"},
     {"draws_nan", "draws-nan", "failed",

@@ -36,8 +36,8 @@ protected:
     }
     [[nodiscard]] fs::path out() const { return folder_.path() / "out"; }
 
-    /// Exit status 2, one message with all the parts, and nothing left behind; once `mend` has run, the
-    /// same command flies all.
+    /// Exit status 2, one message with all the parts, and nothing left behind; once `mend` has run,
+    /// the same command flies all.
     template <typename Mend>
     void expect_refused_until_mended(const std::string& terrain,
                                      const std::vector<std::string>& parts,
@@ -135,7 +135,8 @@ TEST_F(BadTerrain, terrain_that_changes_before_a_resume_is_refused_with_both_che
     const std::string text = report::read_text(file);
     report::write_whole(file, text.substr(0, text.rfind('\n', text.size() - 2) + 1));
     write_heights(8);
-    const Finished resumed = run_lodbench({"run", "--resume", "--out", out().string()}, folder_.path());
+    const Finished resumed =
+        run_lodbench({"run", "--resume", "--out", out().string()}, folder_.path());
     EXPECT_EQ(resumed.status, 2) << resumed.output;
     EXPECT_THAT(resumed.output, HasSubstr("the terrain of scenario 'bad' has changed"));
     EXPECT_THAT(resumed.output, HasSubstr(cells[0]["terrain_checksum"].asString()));

@@ -1,5 +1,6 @@
 #pragma once
-// Small rasters written byte by byte, so that what an importer reads is known without an importer's help.
+// Small rasters written byte by byte, so that what an importer reads is known without an importer's
+// help.
 
 #include <unistd.h>
 
@@ -85,8 +86,13 @@ inline std::string png(std::uint32_t width, std::uint32_t height, int bit_depth,
         const std::string body = std::string(type) + data;
         file += Bytes(true).number(data.size(), 4).text(body).number(crc32(body), 4).str();
     };
-    chunk("IHDR", Bytes(true).number(width, 4).number(height, 4).number(std::uint64_t(bit_depth), 1)
-                      .number(std::uint64_t(colour_type), 1).number(0, 3).str());
+    chunk("IHDR", Bytes(true)
+                      .number(width, 4)
+                      .number(height, 4)
+                      .number(std::uint64_t(bit_depth), 1)
+                      .number(std::uint64_t(colour_type), 1)
+                      .number(0, 3)
+                      .str());
     std::string raw;
     for (const std::string& row : rows) raw += std::string(1, '\0') + row;
     std::uint32_t a = 1;
@@ -95,8 +101,13 @@ inline std::string png(std::uint32_t width, std::uint32_t height, int bit_depth,
         a = (a + byte) % 65521;
         b = (b + a) % 65521;
     }
-    chunk("IDAT", "\x78\x01" + Bytes(false).number(1, 1).number(raw.size(), 2)
-                                   .number(~raw.size() & 0xFFFF, 2).text(raw).str() +
+    chunk("IDAT", "\x78\x01" +
+                      Bytes(false)
+                          .number(1, 1)
+                          .number(raw.size(), 2)
+                          .number(~raw.size() & 0xFFFF, 2)
+                          .text(raw)
+                          .str() +
                       Bytes(true).number(b << 16 | a, 4).str());
     chunk("IEND", "");
     return file;
@@ -109,9 +120,16 @@ public:
         : samples_(std::move(samples)) {
         const auto strip_bytes = std::uint64_t(samples_.size());
         for (const auto& [tag, value] : std::initializer_list<std::pair<int, std::uint64_t>>{
-                 {256, std::uint64_t(width)}, {257, std::uint64_t(height)}, {258, std::uint64_t(bits)},
-                 {259, 1}, {262, 1}, {273, 8}, {277, 1}, {278, std::uint64_t(height)},
-                 {279, strip_bytes}, {339, std::uint64_t(sample_format)}}) {
+                 {256, std::uint64_t(width)},
+                 {257, std::uint64_t(height)},
+                 {258, std::uint64_t(bits)},
+                 {259, 1},
+                 {262, 1},
+                 {273, 8},
+                 {277, 1},
+                 {278, std::uint64_t(height)},
+                 {279, strip_bytes},
+                 {339, std::uint64_t(sample_format)}}) {
             add(tag, 4, 1, Bytes(false).number(value, 4).str());
         }
     }
@@ -126,7 +144,8 @@ public:
     Tiff& ascii(int tag, const std::string& text) {
         return add(tag, 2, text.size() + 1, text + '\0');
     }
-    /// Pixels of `spacing`, the north-west corner at (west, north); geographic WGS 84 or UTM zone 11 N.
+    /// Pixels of `spacing`, the north-west corner at (west, north); geographic WGS 84 or UTM zone
+    /// 11 N.
     Tiff& place(double spacing, double west, double north, bool geographic) {
         doubles(33550, {spacing, spacing, 0});
         doubles(33922, {0, 0, 0, west, north, 0});
@@ -147,7 +166,8 @@ public:
         file.text("II").number(42, 2).number(directory, 4).text(strip).number(entries_.size(), 2);
         std::string tail;
         for (const Entry& entry : entries_) {
-            file.number(std::uint64_t(entry.tag), 2).number(std::uint64_t(entry.type), 2)
+            file.number(std::uint64_t(entry.tag), 2)
+                .number(std::uint64_t(entry.type), 2)
                 .number(entry.count, 4);
             std::string data = entry.data;
             if (data.size() <= 4) {
@@ -186,11 +206,22 @@ inline std::string exr(int width, int height, const std::vector<float>& samples)
     const auto attribute = [&header](const char* name, const char* type, const std::string& value) {
         header.text(name).number(0, 1).text(type).number(0, 1).number(value.size(), 4).text(value);
     };
-    const std::string box = Bytes(false).number(0, 8).number(std::uint64_t(width - 1), 4)
-                                .number(std::uint64_t(height - 1), 4).str();
+    const std::string box = Bytes(false)
+                                .number(0, 8)
+                                .number(std::uint64_t(width - 1), 4)
+                                .number(std::uint64_t(height - 1), 4)
+                                .str();
     header.number(20000630, 4).number(2, 4);
-    attribute("channels", "chlist", Bytes(false).text("Y").number(0, 1).number(2, 4).number(0, 4)
-                                        .number(1, 4).number(1, 4).number(0, 1).str());
+    attribute("channels", "chlist",
+              Bytes(false)
+                  .text("Y")
+                  .number(0, 1)
+                  .number(2, 4)
+                  .number(0, 4)
+                  .number(1, 4)
+                  .number(1, 4)
+                  .number(0, 1)
+                  .str());
     attribute("compression", "compression", std::string(1, '\0'));
     attribute("dataWindow", "box2i", box);
     attribute("displayWindow", "box2i", box);
