@@ -189,7 +189,7 @@ void add_mesh(CLI::App& app, int& status) {
     command->add_option("--scenario", options->scenario,
                         "scenario file; the demo's when not given");
     command->add_option("--frame", options->frame, "index on the flight path, 0 when not given")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0, 999999));
     command->add_option("-o,--out", options->out, "file to write, whole or not at all")->required();
     add_repeated(*command, "--set", options->settings, "[METHOD.]PARAM=VALUE");
     command

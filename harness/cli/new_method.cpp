@@ -15,6 +15,7 @@
 
 #include "api/error.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "report/results.h"
 #include "run/locations.h"
 
@@ -68,6 +69,18 @@ MethodName parse_name(const std::string& id) {
             "new-method '{}': the name is taken by lodbench or CMake; choose another", id));
     }
     return name;
+}
+
+/// Two plugins with one id are both refused: better now than when the second is built.
+void refuse_id_in_use(const std::string& id) {
+    for (const run::PluginListing& plugin : find_plugins({})) {
+        for (const run::MethodInfo& method : plugin.methods) {
+            if (method.id != id) continue;
+            throw InputError(
+                fmt::format("new-method '{}': {} holds a method of that id; choose another", id,
+                            plugin.path.string()));
+        }
+    }
 }
 
 fs::path template_folder() {
@@ -156,6 +169,7 @@ void print_steps(const fs::path& folder, const std::vector<std::string>& steps) 
 
 void new_method(const std::string& id, const std::string& directory) {
     const MethodName name = parse_name(id);
+    refuse_id_in_use(id);
     const fs::path list = fs::path("methods") / "CMakeLists.txt";
     if (directory.empty() && fs::exists(list)) {
         const fs::path folder = fs::path("methods") / name.snake_case;

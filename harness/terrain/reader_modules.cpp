@@ -4,7 +4,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <vector>
+#include <array>
 
 #include "api/error.h"
 #include "terrain/raster_reader.h"
@@ -23,7 +23,8 @@ OpenRaster load_module(const fs::path& file, const char* name, const char* what,
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     const fs::path base = program.parent_path().parent_path();
-    for (const fs::path& module : {base / "readers" / name, base / LODBENCH_READER_SUBDIR / name}) {
+    const std::array places = {base / "readers" / name, base / LODBENCH_READER_SUBDIR / name};
+    for (const fs::path& module : places) {
         if (!fs::exists(module, error)) continue;
         void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
         void* symbol = handle != nullptr ? dlsym(handle, "lodbench_open_raster") : nullptr;
@@ -31,8 +32,10 @@ OpenRaster load_module(const fs::path& file, const char* name, const char* what,
         throw EnvironmentError(fmt::format("{}: the reader {} does not load: {}", file.string(),
                                            module.string(), dlerror()));
     }
-    throw InputError(fmt::format("{}: {}, which this build leaves out; configure with -D{}=ON",
-                                 file.string(), what, option));
+    throw InputError(
+        fmt::format("{}: {}, but the module for it is neither {} nor {}; build with "
+                    "-D{}=ON, and install lodbench whole",
+                    file.string(), what, places[0].string(), places[1].string(), option));
 }
 
 }  // namespace

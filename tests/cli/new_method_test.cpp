@@ -111,9 +111,10 @@ TEST_F(NewMethod, never_overwrites) {
 
 TEST_F(NewMethod, refuses_names_that_are_no_method_ids) {
     const std::string too_long(65, 'a');
-    for (const std::string& name : {std::string("''"), std::string("Hello"), std::string("1st"),
-                                    std::string("a_b"), std::string("a/b"), std::string("../up"),
-                                    std::string("'a b'"), std::string("template"), too_long}) {
+    for (const std::string& name :
+         {std::string("''"), std::string("Hello"), std::string("1st"), std::string("a_b"),
+          std::string("a/b"), std::string("../up"), std::string("'a b'"), std::string("template"),
+          std::string("pgm"), too_long}) {
         const Outcome outcome = run(name);
         EXPECT_EQ(outcome.status, 2) << name << ": " << outcome.output;
         EXPECT_NE(outcome.output.find("new-method"), std::string::npos) << outcome.output;
