@@ -50,11 +50,10 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (const std::string words = unknown_command(app);
-            !words.empty() && error.get_exit_code() != 0) {
-            return fail(kWrongInput, words.c_str());
-        }
-        return app.exit(error) == 0 ? kAllWell : kWrongInput;
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        std::string words = unknown_command(app);
+        if (words.empty()) words = fmt::format("{}; see --help", error.what());
+        return fail(kWrongInput, words.c_str());
     } catch (const lodbench::InputError& error) {
         return fail(kWrongInput, error.what());
     } catch (const lodbench::EnvironmentError& error) {
