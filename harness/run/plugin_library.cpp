@@ -23,7 +23,9 @@ PluginLibrary::PluginLibrary(const std::filesystem::path& path)
     // Without a slash the loader would search its own folders.
     : path_(std::filesystem::absolute(path)) {
     loader_log("opening {}", path_.string());
-    handle_ = dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL);
+    // The code stays mapped: a worker of a thread pool (oneTBB's) may still be on its way out of a
+    // plugin's loop when the method is gone, and would return into nothing.
+    handle_ = dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (handle_ == nullptr) {
         const char* words = dlerror();
         refuse(path_,

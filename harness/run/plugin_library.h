@@ -57,7 +57,8 @@ struct PluginListing {
 [[nodiscard]] const MethodInfo& find_method(const std::vector<PluginListing>& plugins,
                                             const std::string& id, const std::string& where);
 
-/// A plugin that is open in this process (RTLD_NOW | RTLD_LOCAL).
+/// A plugin that is open in this process (RTLD_NOW | RTLD_LOCAL). Its code stays mapped until the
+/// process ends, for threads that are still leaving it.
 class PluginLibrary {
 public:
     /// Throws InputError with the refusal in words.

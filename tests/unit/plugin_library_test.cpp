@@ -1,5 +1,6 @@
 // Listing plugins and checking settings: the words of each refusal.
 
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,6 +74,14 @@ MethodInfo method_with_params() {
                      {"cull", ParamType::boolean, 1, 0, 1, "", {}, ""},
                      {"cracks", ParamType::choice, 0, 0, 0, "none", {"none", "skirt"}, ""}};
     return method;
+}
+
+TEST(PluginLibrary, code_stays_mapped_for_threads_that_are_still_leaving_it) {
+    const std::string path = LODBENCH_PLUGINS "/lindstrom.so";
+    { const PluginLibrary library(path); }
+    void* still = dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD);
+    EXPECT_NE(still, nullptr);
+    if (still != nullptr) dlclose(still);
 }
 
 TEST(MakeParams, fills_in_defaults_and_reads_every_type) {
