@@ -6,7 +6,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <map>
 
@@ -254,9 +253,7 @@ void Flight::measure_frame(FrameRecord& record) {
     stage_->pause_background();
     const measure::CapturedSurface surface = stage_->capture();
     stage_->resume_background();
-    const auto broken = std::ranges::count_if(surface.vertices, [](const glm::vec3& v) {
-        return !std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z);
-    });
+    const auto broken = measure::nonfinite_count(surface);
     if (broken > 0) {
         throw MethodFailure(
             fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
