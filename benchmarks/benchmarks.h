@@ -23,6 +23,10 @@ double seconds_of(const Work& work) {
 /// core.
 void lindstrom_cost(const Options& options);
 
+/// The reference ray caster: rays and lines of sight per second on one thread, one view after
+/// another.
+void ray_caster_cost(const Options& options);
+
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();
 

@@ -13,9 +13,9 @@
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    std::vector<std::string> subjects = {"harness", "lindstrom"};
-    app.add_option("subjects", subjects, "harness, lindstrom; all when none is named")
-        ->check(CLI::IsMember({"harness", "lindstrom"}));
+    std::vector<std::string> subjects = {"harness", "lindstrom", "rays"};
+    app.add_option("subjects", subjects, "harness, lindstrom, rays; all when none is named")
+        ->check(CLI::IsMember({"harness", "lindstrom", "rays"}));
     app.add_option("--size", options.size, "samples a side of the terrain")
         ->check(CLI::Range(3, 32769));
     app.add_option("--frames", options.frames, "cameras of a repetition")
@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     try {
         if (wanted("harness")) lodbench::benchmarks::harness_cost();
         if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);
+        if (wanted("rays")) lodbench::benchmarks::ray_caster_cost(options);
     } catch (const std::exception& error) {
         fmt::print(stderr, "lodbench_benchmarks: {}\n", error.what());
         return 1;
