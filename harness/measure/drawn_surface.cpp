@@ -1,0 +1,289 @@
+#include "measure/drawn_surface.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "measure/plan_ray.h"
+#include "measure/plan_triangle.h"
+
+namespace lodbench::measure {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = DrawnSurface::kRoundingUnits / 16777216;  // 2^-24
+
+/// The least float that is not below, the greatest that is not above a point.
+struct FloatBracket {
+    glm::vec2 low, high;
+    explicit FloatBracket(const glm::dvec2& point) : low(point), high(point) {
+        for (int axis = 0; axis < 2; ++axis) {
+            if (double(low[axis]) > point[axis]) low[axis] = std::nextafter(low[axis], -INFINITY);
+            if (double(high[axis]) < point[axis]) high[axis] = std::nextafter(high[axis], INFINITY);
+        }
+    }
+};
+
+bool finite(const Corners& corners) {
+    return std::ranges::all_of(corners, [](const glm::vec3& corner) {
+        return std::isfinite(corner.x) && std::isfinite(corner.y) && std::isfinite(corner.z);
+    });
+}
+
+glm::dvec3 normal(const Corners& corners) {
+    const glm::dvec3 a(corners[0]);
+    return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+}
+
+double largest_plan_coordinate(const glm::vec3* corners) {
+    float largest = 0;
+    for (int i = 0; i < 3; ++i) {
+        largest = std::max({largest, std::abs(corners[i].x), std::abs(corners[i].y)});
+    }
+    return largest;
+}
+
+/// Least altitude in plan = twice the area / longest edge.
+bool thicker_than(double thickness, const Corners& corners) {
+    const glm::dvec2 a(corners[0]);
+    const glm::dvec2 b(corners[1]);
+    const glm::dvec2 c(corners[2]);
+    const double longest =
+        std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    return std::abs(plan_area(a, b, c)) > thickness * longest;
+}
+
+/// The t at which origin + t * direction meets a triangle, sides inclusive; infinity where it does
+/// not. Signs of the volumes that the ray spans with the sides, each from the same end for both
+/// triangles at that side (after Woop, Benthin and Wald: Watertight Ray/Triangle Intersection,
+/// 2013, without their shear): no ray slips through between two.
+double meeting(const glm::vec3* corners, const glm::dvec3& origin, const glm::dvec3& direction) {
+    const glm::dvec3 a = glm::dvec3(corners[0]) - origin;
+    const glm::dvec3 b = glm::dvec3(corners[1]) - origin;
+    const glm::dvec3 c = glm::dvec3(corners[2]) - origin;
+    const double weight_a = glm::dot(direction, glm::cross(b, c));
+    const double weight_b = -glm::dot(direction, glm::cross(a, c));
+    const double weight_c = glm::dot(direction, glm::cross(a, b));
+    const auto [least, greatest] = std::minmax({weight_a, weight_b, weight_c});
+    if (least < 0 && greatest > 0) return kInfinity;
+    const double sum = weight_a + weight_b + weight_c;
+    if (sum == 0) return kInfinity;  // seen edge-on
+    const glm::dvec3 point = (weight_a * a + weight_b * b + weight_c * c) / sum;
+    return glm::dot(point, direction) / glm::dot(direction, direction);
+}
+
+void append(std::vector<glm::vec3>& vertices, const glm::vec3* corners) {
+    vertices.insert(vertices.end(), corners, corners + 3);
+}
+
+}  // namespace
+
+struct DrawnSurface::Sorted {
+    std::vector<glm::vec3> surface, slivers;
+    std::vector<glm::vec3> steep;    ///< with thickness
+    std::vector<glm::vec3> upright;  ///< steep, without
+};
+
+DrawnSurface::DrawnSurface(CapturedSurface&& surface, const TerrainInfo& info)
+    : info_(info),
+      origin_(surface.origin),
+      low_(info.extent_min() - glm::dvec2(surface.origin)),
+      high_(info.extent_max() - glm::dvec2(surface.origin)),
+      reach_(std::max({std::abs(low_.x), std::abs(low_.y), std::abs(high_.x), std::abs(high_.y)})) {
+    Sorted sorted = sort_by_kind(std::move(surface.vertices));
+    slivers_ = TriangleTree(std::move(sorted.slivers), low_, high_);
+    surface_ = TriangleTree(std::move(sorted.surface), low_, high_);
+
+    std::vector<glm::vec3> skirts;
+    std::vector<glm::vec3> risers;
+    const std::vector<char> steep_below = below_surface(sorted.steep);
+    for (std::size_t i = 0; i < steep_below.size(); ++i) {
+        append(steep_below[i] != 0 ? skirts : risers, &sorted.steep[i * 3]);
+    }
+    if (!risers.empty()) {
+        std::vector<glm::vec3> all = surface_.release();
+        all.insert(all.end(), risers.begin(), risers.end());
+        surface_ = TriangleTree(std::move(all), low_, high_);
+    }
+    // Only now: what hangs from a riser is below it, and is never part of l_f itself.
+    const std::vector<char> upright_below = below_surface(sorted.upright);
+    for (std::size_t i = 0; i < upright_below.size(); ++i) {
+        if (upright_below[i] != 0) {
+            append(skirts, &sorted.upright[i * 3]);
+        } else {
+            ++wall_triangle_count_;
+        }
+    }
+    for (const glm::vec3& vertex : skirts) {
+        skirts_low_ = glm::min(skirts_low_, glm::dvec2(vertex));
+        skirts_high_ = glm::max(skirts_high_, glm::dvec2(vertex));
+    }
+    skirts_ = TriangleTree(std::move(skirts), low_, high_);
+}
+
+DrawnSurface::Sorted DrawnSurface::sort_by_kind(std::vector<glm::vec3>&& vertices) const {
+    Sorted sorted;
+    sorted.surface = std::move(vertices);  // nearly all of them: kept where they are
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i + 2 < sorted.surface.size(); i += 3) {
+        Corners corners{sorted.surface[i], sorted.surface[i + 1], sorted.surface[i + 2]};
+        if (!finite(corners) || !touches_extent(corners.data())) continue;
+        corners = ordered(corners);
+        const glm::dvec3 upward = normal(corners);
+        if (upward == glm::dvec3(0.0)) continue;
+        const bool steep = glm::length(glm::dvec2(upward)) > kSteepSlope * std::abs(upward.z);
+        const bool thick = thicker_than(plan_rounding(corners.data()), corners);
+        if (steep) {
+            append(thick ? sorted.steep : sorted.upright, corners.data());
+        } else if (!thick) {
+            append(sorted.slivers, corners.data());
+        } else {
+            std::ranges::copy(corners, sorted.surface.begin() + std::ptrdiff_t(kept));
+            kept += 3;
+        }
+    }
+    sorted.surface.resize(kept);
+    return sorted;
+}
+
+std::vector<char> DrawnSurface::below_surface(std::span<const glm::vec3> steep) const {
+    std::vector<char> below(steep.size() / 3);
+    tbb::parallel_for(std::size_t(0), below.size(),
+                      [&](std::size_t i) { below[i] = is_below_surface(&steep[i * 3]) ? 1 : 0; });
+    return below;
+}
+
+bool DrawnSurface::is_below_surface(const glm::vec3* corners) const {
+    const glm::dvec3 a(corners[0]);
+    const glm::dvec3 b(corners[1]);
+    const glm::dvec3 c(corners[2]);
+    // The rounding of z; and over the rounding in plan, a surface that is not steep rises by
+    // kSteepSlope times that at most.
+    const double margin = kRounding * std::max({std::abs(a.z), std::abs(b.z), std::abs(c.z)}) +
+                          kSteepSlope * plan_rounding(corners);
+    const std::array<glm::dvec3, 7> points{
+        a, b, c, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0};
+    return std::ranges::all_of(points, [&](const glm::dvec3& point) {
+        return relative_height(glm::clamp(glm::dvec2(point), low_, high_)) >= point.z - margin;
+    });
+}
+
+double DrawnSurface::plan_rounding(double largest_coordinate) const {
+    return kRounding * std::min(largest_coordinate, reach_);
+}
+
+double DrawnSurface::plan_rounding(const glm::vec3* corners) const {
+    return plan_rounding(largest_plan_coordinate(corners));
+}
+
+bool DrawnSurface::touches_extent(const glm::vec3* corners) const {
+    const double rounding = plan_rounding(corners);
+    for (int axis = 0; axis < 2; ++axis) {
+        const auto [least, greatest] =
+            std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+        if (greatest < low_[axis] - rounding || least > high_[axis] + rounding) return false;
+    }
+    return true;
+}
+
+std::optional<double> DrawnSurface::height(const glm::dvec2& position) const {
+    const double relative = relative_height(position - glm::dvec2(origin_));
+    if (relative == -kInfinity) return std::nullopt;
+    return origin_.z + relative;
+}
+
+double DrawnSurface::relative_height(const glm::dvec2& point) const {
+    double highest = -kInfinity;
+    const FloatBracket bracket(point);
+    surface_.each(
+        [&bracket](const TriangleTree::Node& node, std::size_t i) {
+            return (node.min_x[i] <= bracket.high.x) & (node.max_x[i] >= bracket.low.x) &
+                   (node.min_y[i] <= bracket.high.y) & (node.max_y[i] >= bracket.low.y);
+        },
+        [&](const glm::vec3* corners) {
+            const PlanTriangle triangle(corners);
+            if (triangle.covers(point)) highest = std::max(highest, triangle.height(point));
+        });
+    if (highest != -kInfinity) return highest;
+    return nearby_height(point);
+}
+
+double DrawnSurface::nearby_height(const glm::dvec2& point) const {
+    double highest = -kInfinity;
+    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
+        return is_near(node, i, point, point);
+    };
+    const auto visit = [&](const glm::vec3* corners) {
+        const OutlinePoint nearest = nearest_on_outline(corners, point);
+        if (nearest.distance <= plan_rounding(corners)) highest = std::max(highest, nearest.z);
+    };
+    surface_.each(enters, visit);
+    slivers_.each(enters, visit);
+    return highest;
+}
+
+bool DrawnSurface::anything_near(const glm::dvec2& low, const glm::dvec2& high) const {
+    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
+        return is_near(node, i, low, high);
+    };
+    const auto found = [](const glm::vec3* /*corners*/) { return true; };
+    return surface_.any(enters, found) || slivers_.any(enters, found);
+}
+
+bool DrawnSurface::is_near(const TriangleTree::Node& node, std::size_t i, const glm::dvec2& low,
+                           const glm::dvec2& high) const {
+    const float largest = std::max({std::abs(node.min_x[i]), std::abs(node.max_x[i]),
+                                    std::abs(node.min_y[i]), std::abs(node.max_y[i])});
+    // That of any triangle within, and a little for the rounding of the distance itself.
+    const double rounding = plan_rounding(largest) * (1 + 0x1p-40);
+    return node.min_x[i] - rounding <= high.x && node.max_x[i] + rounding >= low.x &&
+           node.min_y[i] - rounding <= high.y && node.max_y[i] + rounding >= low.y;
+}
+
+bool DrawnSurface::passes_below(const glm::dvec3& origin, const glm::dvec3& direction, double from,
+                                double to) const {
+    const std::optional<PlanRay> ray =
+        PlanRay::over(low_, high_, origin - origin_, direction, from, to);
+    if (!ray) return false;
+    return surface_.any(
+        [&ray](const TriangleTree::Node& node, std::size_t i) { return ray->reaches(node, i); },
+        [&ray](const glm::vec3* corners) { return ray->is_below(PlanTriangle(corners)); });
+}
+
+std::optional<double> DrawnSurface::meets_skirt(const glm::dvec3& origin,
+                                                const glm::dvec3& direction, double from,
+                                                double to) const {
+    // Skirts may lean out of the extent.
+    return least_meeting(skirts_, skirts_low_, skirts_high_, origin, direction, from, to);
+}
+
+std::optional<double> DrawnSurface::meets_surface(const glm::dvec3& origin,
+                                                  const glm::dvec3& direction, double from,
+                                                  double to) const {
+    return least_meeting(surface_, low_, high_, origin, direction, from, to);
+}
+
+std::optional<double> DrawnSurface::least_meeting(const TriangleTree& tree, const glm::dvec2& low,
+                                                  const glm::dvec2& high, const glm::dvec3& origin,
+                                                  const glm::dvec3& direction, double from,
+                                                  double to) const {
+    if (tree.triangle_count() == 0) return std::nullopt;
+    const glm::dvec3 start = origin - origin_;
+    const std::optional<PlanRay> ray = PlanRay::over(low, high, start, direction, from, to);
+    if (!ray) return std::nullopt;
+    double least = kInfinity;
+    tree.each(
+        [&ray](const TriangleTree::Node& node, std::size_t i) { return ray->reaches(node, i); },
+        [&](const glm::vec3* corners) {
+            const double t = meeting(corners, start, direction);
+            if (t >= from && t <= to) least = std::min(least, t);
+        });
+    if (least == kInfinity) return std::nullopt;
+    return least;
+}
+
+}  // namespace lodbench::measure
