@@ -1,12 +1,9 @@
-// Loads the reader modules: from readers/ beside the build tree's bin/, or from the installed
-// folder.
+// The readers that stand in modules of their own.
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <array>
-
 #include "api/error.h"
+#include "base/modules.h"
 #include "terrain/raster_reader.h"
 
 namespace lodbench::terrain {
@@ -17,38 +14,35 @@ namespace {
 
 using OpenRaster = RasterReader* (*)(const fs::path&);
 
-/// The module stays loaded: neither library can be unloaded and loaded again safely.
-OpenRaster load_module(const fs::path& file, const char* name, const char* what,
+OpenRaster load_reader(const fs::path& file, const char* name, const char* what,
                        const char* option) {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    const fs::path base = program.parent_path().parent_path();
-    const std::array places = {base / "readers" / name, base / LODBENCH_READER_SUBDIR / name};
-    for (const fs::path& module : places) {
-        if (!fs::exists(module, error)) continue;
-        void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-        void* symbol = handle != nullptr ? dlsym(handle, "lodbench_open_raster") : nullptr;
-        if (symbol != nullptr) return reinterpret_cast<OpenRaster>(symbol);
-        throw EnvironmentError(fmt::format("{}: the reader {} does not load: {}", file.string(),
-                                           module.string(), dlerror()));
+    void* symbol = nullptr;
+    try {
+        symbol = base::find_in_module(name, "lodbench_open_raster");
+    } catch (const EnvironmentError& error) {
+        throw EnvironmentError(fmt::format("{}: {}, but {}", file.string(), what, error.what()));
     }
-    throw InputError(
-        fmt::format("{}: {}, but the module for it is neither {} nor {}; build with "
-                    "-D{}=ON, and install lodbench whole",
-                    file.string(), what, places[0].string(), places[1].string(), option));
+    if (symbol == nullptr) {
+        const auto folders = base::module_folders();
+        throw InputError(fmt::format(
+            "{}: {}, but the module {}.so for it is neither in {} nor in {}; build "
+            "with -D{}=ON, and install lodbench whole",
+            file.string(), what, name, folders[0].string(), folders[1].string(), option));
+    }
+    return reinterpret_cast<OpenRaster>(symbol);
 }
 
 }  // namespace
 
 std::unique_ptr<RasterReader> open_with_gdal(const fs::path& file) {
-    const OpenRaster open = load_module(file, "gdal.so", "elevation models are read through GDAL",
-                                        "LODBENCH_WITH_GDAL");
+    const OpenRaster open =
+        load_reader(file, "gdal", "elevation models are read through GDAL", "LODBENCH_WITH_GDAL");
     return std::unique_ptr<RasterReader>(open(file));
 }
 
 std::unique_ptr<RasterReader> open_with_oiio(const fs::path& file) {
     const OpenRaster open =
-        load_module(file, "oiio.so", "images are read through OpenImageIO", "LODBENCH_WITH_OIIO");
+        load_reader(file, "oiio", "images are read through OpenImageIO", "LODBENCH_WITH_OIIO");
     return std::unique_ptr<RasterReader>(open(file));
 }
 

@@ -1,7 +1,5 @@
 #pragma once
-// The one symbol of a reader module. GDAL and OpenImageIO bring some 260 shared libraries with
-// them; each stands in a module of its own, so that a process pays for them when it reads such a
-// file and not before.
+// The one symbol of a reader's module; see base/modules.h.
 
 #include <filesystem>
 

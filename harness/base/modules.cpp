@@ -1,0 +1,33 @@
+#include "base/modules.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "api/error.h"
+
+namespace lodbench::base {
+
+namespace fs = std::filesystem;
+
+std::array<fs::path, 2> module_folders() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const fs::path base = program.parent_path().parent_path();
+    return {base / "modules", base / LODBENCH_MODULE_SUBDIR};
+}
+
+void* find_in_module(const std::string& name, const char* symbol) {
+    for (const fs::path& folder : module_folders()) {
+        const fs::path module = folder / (name + ".so");
+        std::error_code error;
+        if (!fs::exists(module, error)) continue;
+        void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+        void* address = handle != nullptr ? dlsym(handle, symbol) : nullptr;
+        if (address != nullptr) return address;
+        throw EnvironmentError(
+            fmt::format("the module {} does not load: {}", module.string(), dlerror()));
+    }
+    return nullptr;
+}
+
+}  // namespace lodbench::base
