@@ -1,0 +1,130 @@
+#include "measure/error_pool.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <new>
+
+#include "api/error.h"
+
+namespace lodbench::measure {
+
+void ErrorSums::add(const ErrorSums& other) {
+    count += other.count;
+    infinite += other.infinite;
+    over_bound += other.over_bound;
+    sum += other.sum;
+    sum_of_squares += other.sum_of_squares;
+    greatest = std::max(greatest, other.greatest);
+}
+
+ErrorPool::ErrorPool()
+    : buckets_(
+          static_cast<std::uint64_t*>(std::calloc(kPages * kPageSize, sizeof(std::uint64_t)))) {
+    if (!buckets_) throw std::bad_alloc();
+}
+
+double ErrorPool::value_of(std::size_t bucket) {
+    const std::uint64_t bits =
+        bucket + (std::uint64_t(1023 + kLeastExponent) << unsigned(kBucketBits));
+    // The middle of the bucket.
+    return std::bit_cast<double>((bits << unsigned(52 - kBucketBits)) |
+                                 (std::uint64_t{1} << unsigned(51 - kBucketBits)));
+}
+
+template <typename Visit>
+void ErrorPool::visit_buckets(const Visit& visit) const {
+    for (std::size_t page = 0; page < kPages; ++page) {
+        if (!touched_[page].load(std::memory_order_relaxed)) continue;
+        for (std::size_t i = page * kPageSize; i < (page + 1) * kPageSize; ++i) {
+            if (buckets_[i] != 0 && visit(i, buckets_[i])) return;
+        }
+    }
+}
+
+void ErrorPool::tally(double error) {
+    if (!(error >= 0)) {
+        throw ContractError(
+            fmt::format("ErrorPool: an error of {} px, expected at least 0", error));
+    }
+    if (std::isinf(error)) return;  // summed, and above every bucket
+    if (error < std::ldexp(1.0, kLeastExponent)) {
+        zeros_.fetch_add(1, std::memory_order_relaxed);
+        return;
+    }
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(error) >> unsigned(52 - kBucketBits);
+    const std::size_t bucket = std::min<std::size_t>(
+        bits - (std::uint64_t(1023 + kLeastExponent) << unsigned(kBucketBits)),
+        kPages * kPageSize - 1);
+    std::atomic_ref<std::uint64_t>(buckets_[bucket]).fetch_add(1, std::memory_order_relaxed);
+    std::atomic<bool>& touched = touched_[bucket / kPageSize];
+    if (!touched.load(std::memory_order_relaxed)) touched.store(true, std::memory_order_relaxed);
+}
+
+void ErrorPool::add(const ErrorPool& other) {
+    other.visit_buckets([&](std::size_t bucket, std::uint64_t count) {
+        buckets_[bucket] += count;
+        touched_[bucket / kPageSize] = true;
+        return false;
+    });
+    zeros_ += other.zeros_;
+    sums_.add(other.sums_);
+}
+
+void ErrorPool::clear() {
+    visit_buckets([this](std::size_t bucket, std::uint64_t /*count*/) {
+        buckets_[bucket] = 0;
+        return false;
+    });
+    for (std::atomic<bool>& touched : touched_) touched = false;
+    zeros_ = 0;
+    sums_ = {};
+}
+
+std::optional<double> ErrorPool::percentile(double p) const {
+    if (!(p > 0 && p <= 1)) {
+        throw ContractError(fmt::format("ErrorPool: percentile {}, expected 0 < p <= 1", p));
+    }
+    if (sums_.count == 0) return std::nullopt;
+    // As in statistics.cpp: a rounded product must not push the rank up by one.
+    const double product = p * double(sums_.count);
+    const auto rank = std::uint64_t(
+        std::max(1.0, std::ceil(product * (1 - 4 * std::numeric_limits<double>::epsilon()))));
+    std::uint64_t seen = zeros_;
+    if (seen >= rank) return 0.0;
+    double value = std::numeric_limits<double>::infinity();
+    visit_buckets([&](std::size_t bucket, std::uint64_t count) {
+        seen += count;
+        if (seen < rank) return false;
+        // A bucket's middle may lie above the greatest error in it.
+        value = std::min(value_of(bucket), sums_.greatest);
+        return true;
+    });
+    if (seen < rank && seen + sums_.infinite < sums_.count) {
+        throw ContractError("ErrorPool: fewer errors were tallied than summed");
+    }
+    return value;
+}
+
+ErrorSummary ErrorPool::summary(bool bounded) const {
+    ErrorSummary summary;
+    summary.count = sums_.count;
+    summary.uncovered = sums_.infinite;
+    if (sums_.count == 0) return summary;
+    summary.p999 = percentile(0.999);
+    summary.p99 = percentile(0.99);
+    summary.max = std::numeric_limits<double>::infinity();
+    if (bounded) summary.over_tau = double(sums_.over_bound) / double(sums_.count);
+    const std::uint64_t finite = sums_.count - sums_.infinite;
+    if (finite == 0) return summary;
+    if (sums_.infinite == 0) summary.max = sums_.greatest;
+    summary.max_covered = sums_.greatest;
+    summary.mean = sums_.sum / double(finite);
+    summary.rms = std::sqrt(sums_.sum_of_squares / double(finite));
+    return summary;
+}
+
+}  // namespace lodbench::measure

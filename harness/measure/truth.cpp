@@ -1,0 +1,206 @@
+#include "measure/truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "api/error.h"
+
+namespace lodbench::measure {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kLongestMapSide = 512;  // cells of the top view
+
+std::optional<double> rmse(const HeightSums& heights) {
+    if (heights.count == 0) return std::nullopt;
+    return std::sqrt(heights.sum_of_squares / double(heights.count));
+}
+
+std::optional<double> mean_of(const std::vector<double>& values) {
+    if (values.empty()) return std::nullopt;
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return sum / double(values.size());
+}
+
+template <typename Compare>
+std::optional<double> extreme(const std::vector<double>& values, Compare compare) {
+    if (values.empty()) return std::nullopt;
+    return *std::min_element(values.begin(), values.end(), compare);
+}
+
+/// The pixel of greatest error, of equals the first; both directions.
+WorstSample worst_pixel(const PixelErrors& errors, int width) {
+    WorstSample worst;
+    for (std::size_t i = 0; i < errors.marks.size(); ++i) {
+        for (const float px : {errors.drawn_px[i], errors.reference_px[i]}) {
+            if (!(px > worst.px)) continue;
+            worst = {px, int(i / std::size_t(width)), int(i % std::size_t(width))};
+        }
+    }
+    return worst;
+}
+
+void keep_worst(const WorstSample& candidate, int frame, double& px,
+                std::optional<WorstPlace>& place) {
+    if (!(candidate.px > px)) return;
+    px = candidate.px;
+    place = {frame, candidate.row, candidate.column};
+}
+
+}  // namespace
+
+TruthMeter::TruthMeter(std::span<const float> heights, const TerrainInfo& info,
+                       std::optional<double> claimed)
+    : terrain_(heights, info), claimed_(claimed), bound_(claimed.value_or(kInfinity)) {}
+
+void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface,
+                      FrameTruth* before) {
+    std::swap(now_, before_);
+    now_.frame = frame;
+    now_.camera = camera;
+    now_.measured = false;
+    now_.height_rmse.reset();
+    now_.displacements.resize(terrain_.heights().size());
+    surface_.reset();  // the old one's memory first
+    surface_.emplace(std::move(surface), terrain_.info());
+    surface_->displacements(terrain_.heights(), now_.displacements);
+    if (!before_.measured || before_.frame + 1 != frame) return;
+
+    frame_popping_.clear();
+    const Popping popping = measure_popping(terrain_, camera, before_.displacements,
+                                            now_.displacements, frame_popping_);
+    const ErrorSummary summary = frame_popping_.summary(false);
+    popping_.add(frame_popping_);
+    ++popping_frames_;
+    total_.popping_over_1px += popping.over_1px;
+    total_.popping_covered_once += popping.covered_once;
+    now_.height_rmse = rmse(popping.heights);
+    if (now_.height_rmse && before_.height_rmse) {
+        total_.height_rmse_change = std::max(total_.height_rmse_change.value_or(0),
+                                             std::abs(*now_.height_rmse - *before_.height_rmse));
+    }
+    if (before == nullptr) return;
+    before->popping_max_px = summary.max;
+    before->popping_p999_px = summary.p999;
+}
+
+FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::uint8_t> drawn_rgb,
+                               std::vector<std::uint8_t> reference_rgb) {
+    if (!surface_) throw ContractError("TruthMeter::measure: no frame was taken");
+    frame_screen_.clear();
+    frame_visible_.clear();
+    frame_pixel_.clear();
+    const SampleErrors samples = measure_samples(terrain_, now_.camera, now_.displacements, bound_,
+                                                 frame_screen_, frame_visible_);
+    PixelErrors pixels =
+        measure_pixels(terrain_, *surface_, now_.camera, depth, bound_, frame_pixel_);
+    const Viewport& size = now_.camera.viewport;
+    const ImageDifference image = image_difference({drawn_rgb, size.width, size.height},
+                                                   {reference_rgb, size.width, size.height});
+
+    FrameTruth truth;
+    const ErrorSummary screen = frame_screen_.summary(false);
+    const ErrorSummary visible = frame_visible_.summary(false);
+    const ErrorSummary pixel = frame_pixel_.summary(false);
+    truth.screen_max_px = screen.max;
+    truth.screen_p999_px = screen.p999;
+    truth.screen_rms_px = screen.rms;
+    truth.visible_max_px = visible.max;
+    truth.visible_p999_px = visible.p999;
+    truth.pixel_max_px = pixel.max;
+    truth.pixel_p999_px = pixel.p999;
+    truth.pixel_rms_px = pixel.rms;
+    truth.uncovered_samples = screen.uncovered;
+    truth.crack_pixels = pixels.crack_pixels;
+    truth.skirt_pixels = pixels.skirt_pixels;
+    truth.silhouette_pixels = pixels.silhouette_pixels;
+    truth.silhouette_max_px = pixels.silhouette_max;
+    truth.height_rmse_m = rmse(samples.heights);
+    truth.psnr_db = psnr_db(image.mean_squared_error);
+    truth.ssim = image.ssim;
+
+    screen_.add(frame_screen_);
+    visible_.add(frame_visible_);
+    pixel_.add(frame_pixel_);
+    const int frame = now_.frame;
+    keep_worst(samples.worst, frame, screen_worst_px_, total_.screen_worst);
+    keep_worst(samples.worst_visible, frame, visible_worst_px_, total_.visible_worst);
+    keep_worst(worst_pixel(pixels, size.width), frame, pixel_worst_px_, total_.pixel_worst);
+    ++total_.frames;
+    total_.crack_total += pixels.crack_pixels;
+    total_.crack_max = std::max(total_.crack_max, pixels.crack_pixels);
+    total_.skirt_total += pixels.skirt_pixels;
+    total_.skirt_max = std::max(total_.skirt_max, pixels.skirt_pixels);
+    total_.clipped += samples.clipped + pixels.clipped;
+    total_.unjudged += pixels.unjudged_pixels;
+    total_.silhouette_max = std::max(total_.silhouette_max, pixels.silhouette_max);
+    total_.silhouette_pixels += pixels.silhouette_pixels;
+    silhouette_sum_ += pixels.silhouette_mean;
+    if (truth.height_rmse_m) rmse_.push_back(*truth.height_rmse_m);
+    squared_errors_.push_back(image.mean_squared_error);
+    if (image.ssim) ssim_.push_back(*image.ssim);
+    now_.measured = true;
+    now_.height_rmse = truth.height_rmse_m;
+    keep_if_worst(truth, pixel, std::move(pixels), std::move(drawn_rgb), std::move(reference_rgb));
+    return truth;
+}
+
+void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixel,
+                               PixelErrors&& pixels, std::vector<std::uint8_t>&& drawn_rgb,
+                               std::vector<std::uint8_t>&& reference_rgb) {
+    const auto rank = [](const ErrorSummary& errors) {
+        return std::tuple(errors.p999.value_or(-1), errors.uncovered, errors.rms.value_or(-1));
+    };
+    if (worst_ && !(rank(pixel) > rank(worst_pixel_))) return;
+    worst_pixel_ = pixel;
+    worst_.emplace();
+    worst_->frame = now_.frame;
+    worst_->camera = now_.camera;
+    worst_->drawn_rgb = std::move(drawn_rgb);
+    worst_->reference_rgb = std::move(reference_rgb);
+    worst_->pixels = std::move(pixels);
+    worst_->truth = truth;
+    worst_->pixel_max_covered = pixel.max_covered;
+    const TerrainInfo& info = terrain_.info();
+    const double cells = std::min(1.0, kLongestMapSide / double(std::max(info.rows, info.columns)));
+    worst_->map_rows = std::max(1, int(info.rows * cells));
+    worst_->map_columns = std::max(1, int(info.columns * cells));
+    worst_->map_px = map_of_errors(terrain_, now_.camera, now_.displacements, worst_->map_rows,
+                                   worst_->map_columns);
+}
+
+void TruthMeter::measure_realtime(int frame, const Camera& camera, CapturedSurface&& surface,
+                                  std::span<const float> depth) {
+    const DrawnSurface drawn(std::move(surface), terrain_.info());
+    const PixelErrors pixels = measure_pixels(terrain_, drawn, camera, depth, bound_, realtime_);
+    keep_worst(worst_pixel(pixels, camera.viewport.width), frame, realtime_worst_px_,
+               total_.pixel_realtime_worst);
+}
+
+TruthSummary TruthMeter::summary() const {
+    TruthSummary summary = total_;
+    const bool bounded = claimed_.has_value();
+    summary.screen = screen_.summary(bounded);
+    summary.visible = visible_.summary(bounded);
+    summary.pixel = pixel_.summary(bounded);
+    if (popping_frames_ > 0) summary.popping = popping_.summary(false);
+    if (realtime_.sums().count > 0) summary.pixel_realtime = realtime_.summary(bounded);
+    if (total_.frames > 0) summary.silhouette_mean = silhouette_sum_ / total_.frames;
+    summary.height_rmse_max = extreme(rmse_, std::greater<>());
+    summary.height_rmse_mean = mean_of(rmse_);
+    if (const auto worst = extreme(squared_errors_, std::greater<>())) {
+        summary.psnr_min = psnr_db(*worst);
+        summary.psnr = psnr_db(*mean_of(squared_errors_));
+    }
+    summary.ssim_min = extreme(ssim_, std::less<>());
+    summary.ssim = mean_of(ssim_);
+    if (claimed_ && summary.screen.max) summary.bound_honesty = *summary.screen.max / *claimed_;
+    return summary;
+}
+
+}  // namespace lodbench::measure

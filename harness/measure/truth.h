@@ -1,0 +1,127 @@
+#pragma once
+// The truth about a cell: what the frames of its lockstep replay really showed, frame by frame and
+// pooled over the flight. See the README's table of fields for what each figure means.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "measure/capture.h"
+#include "measure/error_pool.h"
+#include "measure/image_difference.h"
+#include "measure/pixel_errors.h"
+#include "measure/reference_terrain.h"
+#include "measure/sample_errors.h"
+
+namespace lodbench::measure {
+
+/// A measured frame's row. Pixels and metres; +infinity where uncovered places reach into the
+/// figure.
+struct FrameTruth {
+    std::optional<double> screen_max_px, screen_p999_px, screen_rms_px, visible_max_px,
+        visible_p999_px, pixel_max_px, pixel_p999_px, pixel_rms_px;
+    std::optional<std::uint64_t> uncovered_samples, crack_pixels, skirt_pixels, silhouette_pixels;
+    std::optional<double> silhouette_max_px;
+    std::optional<double> popping_max_px, popping_p999_px;  ///< to the next frame
+    std::optional<double> height_rmse_m;
+    std::optional<double> psnr_db, ssim;
+};
+
+/// The frame that looked worst: what is needed to show it.
+struct WorstFrame {
+    int frame = 0;
+    Camera camera;
+    std::vector<std::uint8_t> drawn_rgb, reference_rgb;  ///< row 0 at the top
+    PixelErrors pixels;
+    int map_rows = 0, map_columns = 0;
+    std::vector<float> map_px;  ///< as map_of_errors
+    FrameTruth truth;
+    std::optional<double> pixel_max_covered;  ///< greatest finite pixel error
+};
+
+/// Where an error was greatest: a sample's row and column, or a pixel's.
+struct WorstPlace {
+    int frame = 0, row = 0, column = 0;
+};
+
+/// Over all measured frames. Counts are totals unless they say otherwise.
+struct TruthSummary {
+    int frames = 0;
+    ErrorSummary screen, visible, pixel;
+    std::optional<WorstPlace> screen_worst, visible_worst, pixel_worst;
+    std::uint64_t crack_total = 0, crack_max = 0, skirt_total = 0, skirt_max = 0;
+    std::uint64_t clipped = 0;   ///< segments from true to drawn points cut at near depth
+    std::uint64_t unjudged = 0;  ///< pixels whose ray starts below l_f
+    double silhouette_max = 0, silhouette_mean = 0;
+    std::uint64_t silhouette_pixels = 0;
+    std::optional<ErrorSummary> popping;  ///< absent where no frame had a successor
+    std::uint64_t popping_over_1px = 0, popping_covered_once = 0;
+    std::optional<double> height_rmse_max, height_rmse_mean;
+    std::optional<double> height_rmse_change;  ///< greatest between a frame and the next
+    std::optional<double> psnr,
+        psnr_min;  ///< dB; of the mean squared error of all frames, of the worst
+    std::optional<double> ssim, ssim_min;  ///< mean over the frames, and of the worst
+    std::optional<double> bound_honesty;   ///< greatest screen error / claimed bound
+    std::optional<ErrorSummary> pixel_realtime;
+    std::optional<WorstPlace> pixel_realtime_worst;
+};
+
+class TruthMeter {
+public:
+    /// `heights` as for ReferenceTerrain; `claimed`: the method's bound in pixels, where it has
+    /// one.
+    TruthMeter(std::span<const float> heights, const TerrainInfo& info,
+               std::optional<double> claimed);
+
+    /// What the method drew at `frame`. Where the frame before was measured, what popped between
+    /// the two goes into `before`.
+    void take(int frame, const Camera& camera, CapturedSurface&& surface, FrameTruth* before);
+
+    /// Measures the frame that was taken last: its depth image (see measure_pixels) and both shaded
+    /// pictures, RGB, row 0 at the top.
+    [[nodiscard]] FrameTruth measure(std::span<const float> depth,
+                                     std::vector<std::uint8_t> drawn_rgb,
+                                     std::vector<std::uint8_t> reference_rgb);
+
+    /// The same frame as the real-time replay drew it.
+    void measure_realtime(int frame, const Camera& camera, CapturedSurface&& surface,
+                          std::span<const float> depth);
+
+    [[nodiscard]] TruthSummary summary() const;
+    /// By P99.9 of the pixel error, then uncovered pixels, then RMS; nothing before the first
+    /// frame.
+    [[nodiscard]] const std::optional<WorstFrame>& worst_frame() const { return worst_; }
+    [[nodiscard]] const ReferenceTerrain& terrain() const { return terrain_; }
+
+private:
+    struct Taken {
+        int frame = -1;
+        Camera camera;
+        std::vector<float> displacements;
+        bool measured = false;
+        std::optional<double> height_rmse;
+    };
+    void keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixel, PixelErrors&& pixels,
+                       std::vector<std::uint8_t>&& drawn_rgb,
+                       std::vector<std::uint8_t>&& reference_rgb);
+
+    ReferenceTerrain terrain_;
+    std::optional<double> claimed_;
+    double bound_;
+    Taken now_, before_;
+    std::optional<DrawnSurface> surface_;  ///< of now_
+    ErrorPool screen_, visible_, pixel_, popping_, realtime_;
+    ErrorPool frame_screen_, frame_visible_, frame_pixel_, frame_popping_;  ///< of one frame
+    TruthSummary total_;
+    double screen_worst_px_ = -1, visible_worst_px_ = -1, pixel_worst_px_ = -1,
+           realtime_worst_px_ = -1;
+    int popping_frames_ = 0;
+    std::vector<double> rmse_, squared_errors_, ssim_;
+    double silhouette_sum_ = 0;
+    ErrorSummary worst_pixel_;
+    std::optional<WorstFrame> worst_;
+};
+
+}  // namespace lodbench::measure
