@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "api/error.h"
@@ -54,6 +55,18 @@ std::string to_text(const Json::Value& value, bool indented) {
 Json::Value number(std::optional<double> value) {
     if (!value || !std::isfinite(*value)) return Json::Value::null;
     return *value;
+}
+
+Json::Value number_or_inf(std::optional<double> value) {
+    if (value && std::isinf(*value) && *value > 0) return "inf";
+    return number(value);
+}
+
+std::optional<double> read_number_or_inf(const Json::Value& value) {
+    if (value.isNumeric()) return value.asDouble();
+    if (value.isString() && value.asString() == "inf")
+        return std::numeric_limits<double>::infinity();
+    return std::nullopt;
 }
 
 std::string get_string(const Json::Value& object, const char* key, const std::string& where) {

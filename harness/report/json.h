@@ -18,6 +18,13 @@ namespace lodbench::report {
 /// Null for an absent or non-finite number.
 [[nodiscard]] Json::Value number(std::optional<double> value);
 
+/// A number of which infinity is a measured value: JSON has none, so it is the text "inf". Null
+/// where absent or NaN.
+[[nodiscard]] Json::Value number_or_inf(std::optional<double> value);
+
+/// The reverse: nothing for anything else.
+[[nodiscard]] std::optional<double> read_number_or_inf(const Json::Value& value);
+
 /// Readers of what was parsed: throw InputError naming `where` and the key for a wrong or missing
 /// type.
 [[nodiscard]] std::string get_string(const Json::Value& object, const char* key,

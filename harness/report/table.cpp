@@ -9,6 +9,7 @@
 #include <set>
 
 #include "measure/statistics.h"
+#include "report/json.h"
 
 namespace lodbench::report {
 
@@ -25,7 +26,7 @@ std::vector<double> numbers(const Cells& cells, const char* key, const char* inn
     for (const Json::Value* cell : cells) {
         const Json::Value& outer = (*cell)[key];
         const Json::Value& value = inner == nullptr || !outer.isObject() ? outer : outer[inner];
-        if (value.isNumeric()) values.push_back(value.asDouble());
+        if (const auto number = read_number_or_inf(value)) values.push_back(*number);
     }
     return values;
 }
@@ -86,9 +87,9 @@ std::string label_of(const Json::Value& cell,
 }  // namespace
 
 const std::vector<std::string>& table_columns() {
-    static const std::vector<std::string> columns = {"method",    "fps (range)", "median ms",
-                                                     "P90 ms",    "max ms",      "triangles",
-                                                     "prepare s", "GPU MiB",     "RSS MiB"};
+    static const std::vector<std::string> columns = {
+        "method",  "fps (range)", "median ms", "P90 ms", "max ms",   "triangles", "prepare s",
+        "GPU MiB", "RSS MiB",     "P99.9 px",  "max px", "crack px", "pop px",    "honesty"};
     return columns;
 }
 
@@ -118,7 +119,12 @@ std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uin
                       median(numbers(good, "triangles", "mean"), "{:.0f}"),
                       median(numbers(good, "prepare_s"), "{:.3f}"),
                       median(numbers(good, "gpu_bytes"), "{:.1f}", kMebibyte),
-                      greatest(numbers(good, "peak_rss_bytes"), "{:.0f}", kMebibyte)};
+                      greatest(numbers(good, "peak_rss_bytes"), "{:.0f}", kMebibyte),
+                      median(numbers(good, "pixel_error_px", "p999"), "{:.2f}"),
+                      median(numbers(good, "pixel_error_px", "max"), "{:.2f}"),
+                      median(numbers(good, "crack_pixels", "total"), "{:.0f}"),
+                      median(numbers(good, "popping_px", "p999"), "{:.2f}"),
+                      median(numbers(good, "bound_honesty"), "{:.3f}")};
         rows.push_back(std::move(row));
     }
     return rows;
