@@ -30,6 +30,7 @@ struct Options {
     int repetitions = 0;
     std::uint64_t seed = 0;
     bool json = false;
+    bool no_truth = false;
 };
 
 /// Progress on standard error: one line redrawn on a terminal, a line for each finished cell
@@ -157,6 +158,8 @@ void add_run(CLI::App& app, int& status) {
     auto* repeat = command->add_option("--repeat", options->repetitions, "repetitions of each cell")
                        ->check(CLI::Range(1, 10000));
     add_device(*command, request.device);
+    command->add_flag("--no-truth", options->no_truth,
+                      "only times and counts: leaves out screen error, cracks and popping");
     command->add_flag("--resume", request.resume,
                       "finish what is missing in --out, as the run began");
     command->add_flag("--json", options->json, "print one JSON object instead of the table");
@@ -164,6 +167,7 @@ void add_run(CLI::App& app, int& status) {
         run::RunRequest& wanted = options->request;
         if (*frames) wanted.overrides.frames = options->frames;
         if (*seed) wanted.overrides.seed = options->seed;
+        if (options->no_truth) wanted.overrides.truth = false;
         if (*repeat) wanted.overrides.repetitions = options->repetitions;
         wanted.command_line = command_line();
         status = fly(*options);

@@ -14,6 +14,7 @@
 #include "run/cell_record.h"
 #include "run/context.h"
 #include "run/exit_status.h"
+#include "run/frame_columns.h"
 #include "run/run_folder.h"
 #include "run/supervisor.h"
 

@@ -1,6 +1,8 @@
 #pragma once
 // One cell of a campaign: method x scenario x setting x repetition, and what came of it.
 
+#include <json/value.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,6 +10,7 @@
 #include <vector>
 
 #include "measure/statistics.h"
+#include "measure/truth.h"
 #include "run/plugin_library.h"
 #include "run/vital_signs.h"
 #include "scenario/scenario.h"
@@ -37,13 +40,14 @@ struct Range {
     T min{}, max{};
 };
 
-/// One row of frames/<cell>.csv. Counts come from the lockstep replay, times from the timing
-/// replay.
+/// One row of frames/<cell>.csv. Counts and the truth come from the lockstep replay, times from the
+/// timing replay.
 struct FrameRecord {
     int frame = 0;
     double wall_ms = 0, select_ms = 0, submit_ms = 0, cpu_ms = 0;
     std::optional<double> gpu_ms;
     std::optional<std::uint64_t> triangles, draw_calls, uploaded_bytes, triangles_nondegenerate;
+    measure::FrameTruth truth;
 };
 
 /// What a cell measured; every absent value is null in cells.jsonl.
@@ -63,6 +67,7 @@ struct CellResult {
     std::string terrain_name, terrain_checksum;
     std::string plugin_checksum;  ///< of the plugin file: 16 hex digits
     std::optional<double> claimed_px;
+    Json::Value truth;  ///< as truth_record gives it; null where the truth was not measured
     std::vector<std::string> warnings;
     // Context as the child saw it.
     std::string gl_vendor, gl_renderer, gl_version, device_description;
@@ -71,7 +76,8 @@ struct CellResult {
     int warmup_frames = 0, frames_in_flight = 0;  ///< of the timing replay
 };
 
-/// Flies one cell in this process: load, prepare, timing replay, lockstep replay, shots. Throws
+/// Flies one cell in this process: load, prepare, timing replay, lockstep replay with the truth and
+/// the pictures, and for asynchronous methods the real-time replay. Throws
 /// nothing: whatever goes wrong is in the result. Reports each call and frame to `signs`.
 [[nodiscard]] CellResult fly_cell(const CellSpec& spec, VitalSigns& signs);
 

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "report/json.h"
+#include "run/frame_columns.h"
+#include "run/truth_record.h"
 
 namespace lodbench::run {
 
@@ -79,26 +81,6 @@ Json::Value text_or_null(const std::string& text) {
     return text.empty() ? Json::Value::null : Json::Value(text);
 }
 
-// A frame as an array, in this order: the columns of the CSV.
-constexpr const char* kFrameColumns =
-    "frame,wall_ms,select_ms,submit_ms,cpu_ms,gpu_ms,triangles,triangles_nondegenerate,draw_calls,"
-    "uploaded_bytes";
-constexpr Json::ArrayIndex kFrameColumnCount = 10;
-
-Json::Value to_json(const FrameRecord& frame) {
-    Json::Value row = Json::arrayValue;
-    row.append(frame.frame);
-    for (const double value : {frame.wall_ms, frame.select_ms, frame.submit_ms, frame.cpu_ms}) {
-        row.append(number(value));
-    }
-    row.append(number(frame.gpu_ms));
-    for (const auto& value :
-         {frame.triangles, frame.triangles_nondegenerate, frame.draw_calls, frame.uploaded_bytes}) {
-        row.append(count(value));
-    }
-    return row;
-}
-
 std::optional<std::uint64_t> read_count(const Json::Value& value) {
     return value.isNull() ? std::nullopt : std::optional<std::uint64_t>(value.asUInt64());
 }
@@ -107,39 +89,7 @@ std::optional<double> read_number(const Json::Value& value) {
     return value.isNull() ? std::nullopt : std::optional(value.asDouble());
 }
 
-FrameRecord read_frame(const Json::Value& row, const std::string& where) {
-    if (!row.isArray() || row.size() != kFrameColumnCount) {
-        throw InputError(where + ": a frame does not have 10 columns");
-    }
-    FrameRecord frame;
-    frame.frame = row[0].asInt();
-    frame.wall_ms = row[1].asDouble();
-    frame.select_ms = row[2].asDouble();
-    frame.submit_ms = row[3].asDouble();
-    frame.cpu_ms = row[4].asDouble();
-    frame.gpu_ms = read_number(row[5]);
-    frame.triangles = read_count(row[6]);
-    frame.triangles_nondegenerate = read_count(row[7]);
-    frame.draw_calls = read_count(row[8]);
-    frame.uploaded_bytes = read_count(row[9]);
-    return frame;
-}
-
 constexpr std::array kStatusNames = {"ok", "skipped", "failed", "crashed", "timeout"};
-
-// Later work measures these; until then they are there and null.
-constexpr std::array kNotYetMeasured = {"screen_error_px",
-                                        "visible_error_px",
-                                        "pixel_error_px",
-                                        "pixel_error_realtime_px",
-                                        "crack_pixels",
-                                        "skirt_pixels",
-                                        "uncovered_samples",
-                                        "silhouette_px",
-                                        "popping_px",
-                                        "height_rmse_m",
-                                        "image",
-                                        "bound_honesty"};
 
 /// JsonCpp throws its own errors for wrong types.
 template <typename Body>
@@ -176,6 +126,7 @@ std::string write_spec(const CellSpec& spec) {
     json["scenario_base"] = spec.scenario_base.string();
     Json::Value& overrides = json["overrides"] = Json::objectValue;
     if (spec.overrides.frames) overrides["frames"] = *spec.overrides.frames;
+    if (spec.overrides.truth) overrides["truth"] = *spec.overrides.truth;
     if (spec.overrides.seed) overrides["seed"] = Json::UInt64(*spec.overrides.seed);
     if (spec.overrides.repetitions) overrides["repetitions"] = *spec.overrides.repetitions;
     if (spec.overrides.viewport) {
@@ -207,6 +158,7 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         spec.scenario_base = report::get_string(json, "scenario_base", where);
         const Json::Value& overrides = json["overrides"];
         if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
+        if (overrides.isMember("truth")) spec.overrides.truth = overrides["truth"].asBool();
         if (overrides.isMember("seed")) spec.overrides.seed = overrides["seed"].asUInt64();
         if (overrides.isMember("repetitions"))
             spec.overrides.repetitions = overrides["repetitions"].asInt();
@@ -251,6 +203,7 @@ std::string write_result(const CellResult& result) {
     json["terrain_checksum"] = result.terrain_checksum;
     json["plugin_checksum"] = result.plugin_checksum;
     json["claimed_px"] = number(result.claimed_px);
+    json["truth"] = result.truth;
     json["warnings"] = texts(result.warnings);
     json["gl_vendor"] = result.gl_vendor;
     json["gl_renderer"] = result.gl_renderer;
@@ -295,6 +248,10 @@ CellResult read_result(std::string_view text, const std::string& where) {
         result.terrain_checksum = report::get_string(json, "terrain_checksum", where);
         result.plugin_checksum = report::get_string(json, "plugin_checksum", where);
         result.claimed_px = read_number(json["claimed_px"]);
+        result.truth = json["truth"];
+        if (!result.truth.isNull() && !result.truth.isObject()) {
+            throw InputError(where + ": 'truth' is neither null nor an object");
+        }
         for (const Json::Value& warning : report::get_array(json, "warnings", where)) {
             result.warnings.push_back(warning.asString());
         }
@@ -323,7 +280,9 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["seed"] = Json::UInt64(spec.seed);
     json["status"] = name_of(result.status);
     json["reason"] = text_or_null(result.reason);
-    for (const char* name : kNotYetMeasured) json[name] = Json::Value::null;
+    for (const char* name : truth_fields()) {
+        json[name] = result.truth.isObject() ? result.truth[name] : Json::Value::null;
+    }
 
     const std::vector<FrameRecord>& frames = result.frames;
     std::vector<double> wall;
@@ -365,20 +324,6 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["frames_in_flight"] = result.frames_in_flight;
     json["warnings"] = texts(result.warnings);
     return json;
-}
-
-std::string frames_csv(const std::vector<FrameRecord>& frames) {
-    std::string csv = std::string(kFrameColumns) + "\n";
-    const auto field = [](const auto& value) {
-        return value ? fmt::format("{}", *value) : std::string();
-    };
-    for (const FrameRecord& f : frames) {
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", f.frame, f.wall_ms, f.select_ms,
-                           f.submit_ms, f.cpu_ms, field(f.gpu_ms), field(f.triangles),
-                           field(f.triangles_nondegenerate), field(f.draw_calls),
-                           field(f.uploaded_bytes));
-    }
-    return csv;
 }
 
 }  // namespace lodbench::run

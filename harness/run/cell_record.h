@@ -24,9 +24,6 @@ namespace lodbench::run {
                                       const Params& params, const CellResult& result,
                                       double budget_ms);
 
-/// frames/<cell>.csv: a header and a line for each frame; what was not measured is an empty field.
-[[nodiscard]] std::string frames_csv(const std::vector<FrameRecord>& frames);
-
 [[nodiscard]] Json::Value to_json(const Params& params);
 
 }  // namespace lodbench::run

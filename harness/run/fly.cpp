@@ -1,19 +1,23 @@
 // One cell: load, prepare, then the same flight twice. The timing replay captures nothing; the
 // lockstep replay counts and measures and is never timed. A picture that both draw ties them
-// together.
+// together. An asynchronous method flies a third time, at the pace that the timing replay had: what
+// it drew then is what that pace showed.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "base/hash.h"
 #include "measure/timer_verdict.h"
 #include "report/png.h"
 #include "report/results.h"
 #include "run/cell.h"
+#include "run/frame_measurer.h"
 #include "run/stage.h"
 #include "run/timing.h"
 #include "scenario/scenario.h"
@@ -64,16 +68,23 @@ public:
         open();
         prepare();
         choose_frames();
-        signs_.frames_total = scenario_.warmup_frames + 2 * scenario_.frames;
+        const int replays = measures_realtime() ? 3 : 2;
+        signs_.frames_total = (replays - 1) * scenario_.warmup_frames + replays * scenario_.frames;
         fly_for_time();
-        fly_in_lockstep();
-        stage_->release();
+        // The method's own: what measuring needs comes later.
         result_.peak_rss_bytes = peak_rss_bytes();
+        fly_in_lockstep();
+        if (measures_realtime()) fly_in_real_time();
+        measurer_->finish(result_);
+        measurer_->write_picture(shot_path("worst"), spec_.id);
+        measurer_.reset();
+        stage_->release();
     }
 
     [[nodiscard]] std::string where() const {
-        const char* replay = replay_ == 1 ? "timing" : "lockstep";
-        return replay_ == 0 ? "" : fmt::format(", frame {} of the {} replay", frame_, replay);
+        return replay_ == Replay::none
+                   ? ""
+                   : fmt::format(", frame {} of the {} replay", frame_, name_of(replay_));
     }
 
 private:
@@ -82,14 +93,28 @@ private:
     void choose_frames();
     void fly_for_time();
     void fly_in_lockstep();
-    void measure_frame(FrameRecord& record);
+    void fly_in_real_time();
+    void warm_up();
+    [[nodiscard]] bool is_asynchronous() const {
+        return (stage_->method().capabilities & kAsynchronous) != 0;
+    }
+    [[nodiscard]] bool measures_realtime() const { return is_asynchronous() && measures_truth(); }
+    /// Lockstep replays agree to the bit: one repetition says it all.
+    [[nodiscard]] bool measures_truth() const {
+        return scenario_.measure.truth && spec_.repetition == 0;
+    }
+    void measure_frame(int frame);
     void shoot(int frame);
+    [[nodiscard]] std::filesystem::path shot_path(const std::string& which) const {
+        return spec_.out / "shots" / fmt::format("{}__{}.png", spec_.id, which);
+    }
     void begin_frame(int frame) {
         frame_ = frame;
         signs_.frame = frame;
+        signs_.frames_begun.fetch_add(1, std::memory_order_relaxed);
         signs_.beats.fetch_add(1, std::memory_order_relaxed);
     }
-    void begin_replay(int replay) {
+    void begin_replay(Replay replay) {
         replay_ = replay;
         signs_.replay = replay;
     }
@@ -110,11 +135,12 @@ private:
     std::shared_ptr<const terrain::HeightField> terrain_;
     std::unique_ptr<scenario::FlightPath> path_;
     std::unique_ptr<Stage> stage_;
+    std::unique_ptr<FrameMeasurer> measurer_;  // needs the stage
     measure::TimerVerdict verdict_;
     std::vector<int> shots_;
     int hashed_frame_ = 0;
     std::string timing_hash_;
-    int replay_ = 0;
+    Replay replay_ = Replay::none;
     int frame_ = 0;
 };
 
@@ -167,8 +193,7 @@ void Flight::choose_frames() {
     hashed_frame_ = int(random.below(std::uint64_t(scenario_.frames)));
 }
 
-void Flight::fly_for_time() {
-    begin_replay(1);
+void Flight::warm_up() {
     const Camera first = camera_at(0);
     for (int i = 0; i < scenario_.warmup_frames; ++i) {
         begin_frame(0);
@@ -176,6 +201,11 @@ void Flight::fly_for_time() {
         stage_->draw_picture();
         glFinish();
     }
+}
+
+void Flight::fly_for_time() {
+    begin_replay(Replay::timing);
+    warm_up();
     stage_->check_state(false);
     FrameTimer timer(stage_->device(), verdict_);
     result_.frames.resize(std::size_t(scenario_.frames));
@@ -211,7 +241,9 @@ void Flight::fly_for_time() {
 }
 
 void Flight::fly_in_lockstep() {
-    begin_replay(2);
+    begin_replay(Replay::lockstep);
+    measurer_ = std::make_unique<FrameMeasurer>(
+        *stage_, measures_truth() ? result_.claimed_px : std::nullopt, measures_truth());
     std::map<std::string, double> sums;
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         begin_frame(frame);
@@ -224,12 +256,11 @@ void Flight::fly_in_lockstep() {
         record.draw_calls = stage_->device().draw_calls() - draw_calls;
         record.uploaded_bytes = stage_->method_uploaded_bytes() - uploaded;
         for (const auto& [name, value] : stage_->counters()) sums[name] += value;
-        if (frame % scenario_.measure.every == 0) measure_frame(record);
+        measure_frame(frame);
         if (frame == hashed_frame_) {
             stage_->draw_picture();
             result_.depth_hash = stage_->depth_hash();
-            const bool comparable = (stage_->method().capabilities & kAsynchronous) == 0;
-            if (comparable && result_.depth_hash != timing_hash_) {
+            if (!is_asynchronous() && result_.depth_hash != timing_hash_) {
                 throw MethodFailure(fmt::format(
                     "plugin {} draws another picture in the timing replay (depth hash {}) than in "
                     "lockstep ({}): what is measured would not be what is timed",
@@ -249,30 +280,45 @@ void Flight::fly_in_lockstep() {
     result_.gpu_bytes = stage_->method_gpu_bytes();
 }
 
-void Flight::measure_frame(FrameRecord& record) {
-    stage_->pause_background();
-    const measure::CapturedSurface surface = stage_->capture();
-    stage_->resume_background();
-    const auto broken = measure::nonfinite_count(surface);
-    if (broken > 0) {
-        throw MethodFailure(
-            fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
-                        spec_.plugin.filename().string(), broken, surface.vertices.size()));
+/// Every n-th frame, and for popping the frame after it.
+void Flight::measure_frame(int frame) {
+    const int every = scenario_.measure.every;
+    const bool measured = frame % every == 0;
+    const bool successor = measures_truth() && frame > 0 && (frame - 1) % every == 0;
+    if (!measured && !successor) return;
+    FrameRecord* const before = successor ? &result_.frames[std::size_t(frame - 1)] : nullptr;
+    measurer_->take(frame, result_.frames[std::size_t(frame)], before);
+    if (measured) measurer_->measure(result_.frames[std::size_t(frame)]);
+}
+
+/// Frame f begins when the frames before it had taken in the timing replay what they took there;
+/// the time that measuring takes stands still.
+void Flight::fly_in_real_time() {
+    begin_replay(Replay::realtime);
+    warm_up();
+    const Stopwatch clock;
+    double begins_s = 0;
+    double measuring_s = 0;
+    for (int frame = 0; frame < scenario_.frames; ++frame) {
+        begin_frame(frame);
+        while (clock.seconds() - measuring_s < begins_s) {
+            std::this_thread::sleep_for(std::chrono::microseconds(200));
+        }
+        begins_s += result_.frames[std::size_t(frame)].wall_ms * 1e-3;
+        const Camera camera = camera_at(frame);
+        stage_->select(camera, clock_at(frame));
+        stage_->draw(picture_view(camera));
+        glFinish();
+        if (frame % scenario_.measure.every != 0) continue;
+        const Stopwatch measuring;
+        measurer_->measure_realtime(frame);
+        measuring_s += measuring.seconds();
     }
-    if (surface.triangle_count() != record.triangles) {
-        throw MethodFailure(
-            fmt::format("draw of plugin {} generated {} triangles, of which {} went through "
-                        "gl::Device: draw calls "
-                        "must go through it",
-                        spec_.plugin.filename().string(), record.triangles.value_or(0),
-                        surface.triangle_count()));
-    }
-    record.triangles_nondegenerate = measure::nondegenerate_count(surface);
 }
 
 void Flight::shoot(int frame) {
     const auto path = [&](const char* suffix) {
-        return spec_.out / "shots" / fmt::format("{}__f{:05}{}.png", spec_.id, frame, suffix);
+        return shot_path(fmt::format("f{:05}{}", frame, suffix));
     };
     const Viewport& size = scenario_.viewport;
     stage_->draw_picture();

@@ -6,6 +6,7 @@
 #include <bit>
 #include <optional>
 
+#include "api/error.h"
 #include "base/hash.h"
 #include "gl/frame_blocks.h"
 #include "gl/state.h"
@@ -175,13 +176,32 @@ void Stage::fill_blocks(const View& view, bool wireframe) {
     frozen_block_.bind_uniform(gl::kFrozenBinding);
 }
 
-void Stage::draw(const View& view) {
+void Stage::begin_picture(const View& view) {
     set_pipeline_state();
     const float farthest = 0.0F;
     glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, kSky);
     glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &farthest);
     fill_blocks(view, false);
+}
+
+void Stage::draw(const View& view) {
+    begin_picture(view);
     guarded(Call::draw, [&] { method_->draw(view); });
+}
+
+void Stage::draw_reference_picture() {
+    if (!reference_picture_) {
+        reference_picture_ = std::make_unique<ReferencePicture>(*device_, setup_.terrain);
+    }
+    begin_picture(picture_view(camera_));
+    // A large terrain takes a software rasteriser longer than silence is allowed to last.
+    reference_picture_->draw(camera_, [&] { signs_.enter(Call::none); });
+    // Left to the next call of the method, they would be laid at its door.
+    if (const auto errors = device_->take_errors(); !errors.empty()) {
+        throw EnvironmentError(
+            fmt::format("drawing the reference picture: {} GL error{}, the first: {}",
+                        errors.size(), errors.size() == 1 ? "" : "s", errors.front()));
+    }
 }
 
 void Stage::draw_picture(bool wireframe) {

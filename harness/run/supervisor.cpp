@@ -104,10 +104,11 @@ bool belongs_to_a_frame(Call call) {
 std::string place(const VitalSigns& signs, const std::string& plugin) {
     const Call call = signs.call.load();
     const int frame = signs.frame.load();
-    const char* replay = signs.replay.load() == 1 ? "timing" : "lockstep";
-    const std::string when = signs.replay.load() != 0 && frame >= 0
-                                 ? fmt::format(", frame {} of the {} replay", frame, replay)
-                                 : std::string();
+    const Replay replay = signs.replay.load();
+    const std::string when =
+        replay != Replay::none && frame >= 0
+            ? fmt::format(", frame {} of the {} replay", frame, name_of(replay))
+            : std::string();
     switch (call) {
         case Call::none: return fmt::format("between the calls of plugin {}{}", plugin, when);
         case Call::start: return fmt::format("before the first call of plugin {}", plugin);
@@ -219,9 +220,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
                             fmt::format("exceeded the cell's time limit of {} s", limits.cell_s));
         }
         if (progress) {
-            const int total = signs->frames_total.load();
-            const int frame = signs->frame.load() + 1;
-            progress(signs->replay.load() == 2 ? frame + total / 2 : frame, total);
+            progress(signs->frames_begun.load(), signs->frames_total.load());
         }
     }
     log.drain(reading.number());

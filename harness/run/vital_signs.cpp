@@ -27,4 +27,9 @@ const char* name_of(Call call) {
     return call < Call::count_ ? kNames[std::size_t(call)] : "an unknown call";
 }
 
+const char* name_of(Replay replay) {
+    constexpr std::array kNames = {"no", "timing", "lockstep", "real-time"};
+    return kNames.at(std::size_t(replay));
+}
+
 }  // namespace lodbench::run

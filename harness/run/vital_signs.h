@@ -30,14 +30,19 @@ enum class Call : std::uint32_t {
 };
 [[nodiscard]] const char* name_of(Call call);
 
+/// The passes over a flight. Each measures something that the others would disturb.
+enum class Replay : std::int32_t { none, timing, lockstep, realtime };
+[[nodiscard]] const char* name_of(Replay replay);
+
 /// Lives in the shared page. Written by the child, read by the parent.
 struct VitalSigns {
     std::atomic<Call> call{Call::none};
-    std::atomic<std::int32_t> replay{0};  ///< 0 before any, 1 timing, 2 lockstep
+    std::atomic<Replay> replay{Replay::none};
     std::atomic<std::int32_t> frame{-1};
-    std::atomic<std::int32_t> frames_total{0};  ///< of all replays, for the time left
-    std::atomic<std::uint64_t> beats{0};        ///< grows with every call and frame: a sign of life
-    std::atomic<std::int32_t> finished{0};      ///< 1 once the result file stands
+    std::atomic<std::int32_t> frames_begun{0},
+        frames_total{0};                    ///< of all replays, for the time left
+    std::atomic<std::uint64_t> beats{0};    ///< grows with every call and frame: a sign of life
+    std::atomic<std::int32_t> finished{0};  ///< 1 once the result file stands
 
     void enter(Call next) {
         call.store(next, std::memory_order_relaxed);

@@ -148,6 +148,7 @@ void read_flight(Section& top, const std::filesystem::path& folder, Scenario& sc
 void read_measure_and_run(Section& top, Scenario& scenario) {
     if (auto measure = top.section("measure")) {
         set(scenario.measure.every, measure->integer("every", 1, kMaxFrames));
+        set(scenario.measure.truth, measure->boolean("truth"));
         if (auto shots = measure->integers("shots", 0, scenario.frames - 1)) {
             std::sort(shots->begin(), shots->end());
             shots->erase(std::unique(shots->begin(), shots->end()), shots->end());
@@ -288,6 +289,7 @@ void apply(const Overrides& overrides, Scenario& scenario) {
         scenario.viewport = *overrides.viewport;
     }
     if (overrides.seed) scenario.seed = *overrides.seed;
+    if (overrides.truth) scenario.measure.truth = *overrides.truth;
     if (overrides.repetitions) {
         require("--repeat", *overrides.repetitions, kMaxRepetitions);
         scenario.repetitions = *overrides.repetitions;

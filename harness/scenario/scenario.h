@@ -25,7 +25,8 @@ struct MethodRequest {
 };
 
 struct MeasureOptions {
-    int every = 10;  ///< measure every n-th frame of the lockstep replay; >= 1
+    int every = 10;     ///< measure every n-th frame of the lockstep replay; >= 1
+    bool truth = true;  ///< measure what those frames really show: errors, cracks, popping
     std::vector<int>
         shots;  ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
     double budget_ms = 16.67;  ///< for the jank sum
@@ -57,6 +58,7 @@ struct Overrides {
     std::optional<Viewport> viewport;
     std::optional<std::uint64_t> seed;
     std::optional<int> repetitions;
+    std::optional<bool> truth;
 };
 
 /// Parses a scenario. Relative files in it are relative to the scenario's folder. Caps file size (1

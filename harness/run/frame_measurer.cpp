@@ -1,0 +1,124 @@
+#include "run/frame_measurer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "report/png.h"
+#include "report/truth_picture.h"
+#include "run/truth_record.h"
+
+namespace lodbench::run {
+
+FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed, bool truth)
+    : stage_(stage) {
+    if (truth) meter_.emplace(stage.terrain().samples(), stage.terrain().info(), claimed);
+}
+
+measure::CapturedSurface FrameMeasurer::capture() {
+    measure::CapturedSurface surface = stage_.capture();
+    const auto broken = measure::nonfinite_count(surface);
+    if (broken > 0) {
+        throw MethodFailure(
+            fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
+                        stage_.plugin_name(), broken, surface.vertices.size()));
+    }
+    return surface;
+}
+
+void FrameMeasurer::take(int frame, const FrameRecord& record, FrameRecord* before) {
+    stage_.pause_background();
+    measure::CapturedSurface surface = capture();
+    stage_.resume_background();
+    if (surface.triangle_count() != record.triangles) {
+        throw MethodFailure(fmt::format(
+            "draw of plugin {} generated {} triangles, of which {} went through "
+            "gl::Device: draw calls must go through it",
+            stage_.plugin_name(), record.triangles.value_or(0), surface.triangle_count()));
+    }
+    nondegenerate_ = measure::nondegenerate_count(surface);
+    if (!meter_) return;
+    meter_->take(frame, stage_.camera(), std::move(surface),
+                 before == nullptr ? nullptr : &before->truth);
+}
+
+void FrameMeasurer::measure(FrameRecord& record) {
+    record.triangles_nondegenerate = nondegenerate_;
+    if (!meter_) return;
+    stage_.pause_background();
+    stage_.draw_picture();
+    const std::vector<float> depth = stage_.read_depth();
+    std::vector<std::uint8_t> drawn = stage_.read_color();
+    stage_.resume_background();
+    stage_.draw_reference_picture();
+    record.truth = meter_->measure(depth, std::move(drawn), stage_.read_color());
+}
+
+void FrameMeasurer::measure_realtime(int frame) {
+    if (!meter_) return;
+    stage_.pause_background();
+    measure::CapturedSurface surface = capture();
+    stage_.draw_picture();
+    const std::vector<float> depth = stage_.read_depth();
+    stage_.resume_background();
+    meter_->measure_realtime(frame, stage_.camera(), std::move(surface), depth);
+}
+
+void FrameMeasurer::finish(CellResult& result) const {
+    if (!meter_) return;
+    result.truth = truth_record(meter_->summary());
+}
+
+void FrameMeasurer::write_picture(const std::filesystem::path& path,
+                                  const std::string& title) const {
+    if (!meter_ || !meter_->worst_frame()) return;
+    const measure::WorstFrame& worst = *meter_->worst_frame();
+    const measure::ReferenceTerrain& terrain = meter_->terrain();
+    report::TruthPicture picture;
+    picture.camera = worst.camera;
+    picture.terrain = terrain.info();
+    picture.drawn_rgb = worst.drawn_rgb;
+    picture.reference_rgb = worst.reference_rgb;
+    picture.marks = worst.pixels.marks;
+    for (std::size_t i = 0; i < worst.pixels.marks.size(); ++i) {
+        // fmax passes over a NaN: nothing to compare in one direction.
+        picture.error_px.push_back(
+            std::fmax(worst.pixels.drawn_px[i], worst.pixels.reference_px[i]));
+    }
+    picture.map_rows = worst.map_rows;
+    picture.map_columns = worst.map_columns;
+    picture.map_error_px = worst.map_px;
+    for (int row = 0; row < worst.map_rows; ++row) {
+        for (int column = 0; column < worst.map_columns; ++column) {
+            // The sample in the middle of the cell.
+            const auto middle = [](int cell, int cells, int samples) {
+                return int((2 * std::int64_t(cell) + 1) * samples / (2 * std::int64_t(cells)));
+            };
+            picture.map_height.push_back(
+                float(terrain.height(middle(row, worst.map_rows, terrain.info().rows),
+                                     middle(column, worst.map_columns, terrain.info().columns))));
+        }
+    }
+    // A scale to P99.9, so that one pixel does not darken all others; uncovered places have a
+    // colour of their own.
+    const double p999 = worst.truth.pixel_p999_px.value_or(0);
+    const double greatest = worst.pixel_max_covered.value_or(0);
+    picture.scale_px = report::nice_scale(std::isfinite(p999) && p999 > 0 ? p999 : greatest);
+    const auto px = [](const std::optional<double>& value) {
+        return value ? fmt::format("{:.3g} px", *value) : std::string("-");
+    };
+    picture.title = fmt::format("{}, frame {}: the worst of those measured", title, worst.frame);
+    picture.caption = {
+        fmt::format("pixel error P99.9 {}, max {}; screen error P99.9 {}, max {}",
+                    px(worst.truth.pixel_p999_px), px(worst.truth.pixel_max_px),
+                    px(worst.truth.screen_p999_px), px(worst.truth.screen_max_px)),
+        fmt::format("crack pixels {}, sky against terrain {}, uncovered samples {}",
+                    worst.truth.crack_pixels.value_or(0), worst.truth.silhouette_pixels.value_or(0),
+                    worst.truth.uncovered_samples.value_or(0))};
+    const report::Image image = report::draw(picture);
+    report::write_png(path, image.width, image.height, image.rgb);
+}
+
+}  // namespace lodbench::run

@@ -1,0 +1,44 @@
+#pragma once
+// Measures the frames that a stage has selected: captures them, checks what was captured, and hands
+// surface, depth and pictures to whoever knows the truth.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "measure/truth.h"
+#include "run/cell.h"
+#include "run/stage.h"
+
+namespace lodbench::run {
+
+class FrameMeasurer {
+public:
+    /// `truth`: measure it; otherwise triangles are counted only. `claimed`: the method's bound in
+    /// pixels.
+    FrameMeasurer(Stage& stage, std::optional<double> claimed, bool truth);
+
+    /// Captures the frozen selection; what popped since the frame before goes into `before`, where
+    /// that was measured. Throws MethodFailure for vertices that are not finite and for triangles
+    /// that `record` counts and that did not go through gl::Device.
+    void take(int frame, const FrameRecord& record, FrameRecord* before);
+    /// Measures the frame that was taken last into its record: the non-degenerate triangles, and
+    /// the truth.
+    void measure(FrameRecord& record);
+    /// The frozen selection as the real-time replay has it.
+    void measure_realtime(int frame);
+
+    /// The truth about the flight; nothing without it.
+    void finish(CellResult& result) const;
+    /// The worst frame's picture as PNG; does nothing where no frame was measured.
+    void write_picture(const std::filesystem::path& path, const std::string& title) const;
+
+private:
+    [[nodiscard]] measure::CapturedSurface capture();
+
+    Stage& stage_;
+    std::optional<measure::TruthMeter> meter_;
+    std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
+};
+
+}  // namespace lodbench::run
