@@ -27,6 +27,10 @@ void lindstrom_cost(const Options& options);
 /// another.
 void ray_caster_cost(const Options& options);
 
+/// Seconds and memory of one measured frame, all metrics, at 1025 and at the given size; needs a
+/// device.
+void truth_cost(const Options& options);
+
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();
 

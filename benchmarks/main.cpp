@@ -13,9 +13,11 @@
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    std::vector<std::string> subjects = {"harness", "lindstrom", "rays"};
-    app.add_option("subjects", subjects, "harness, lindstrom, rays; all when none is named")
-        ->check(CLI::IsMember({"harness", "lindstrom", "rays"}));
+    const std::vector<std::string> known = {"harness", "lindstrom", "rays", "truth"};
+    std::vector<std::string> subjects = known;
+    app.add_option("subjects", subjects,
+                   fmt::format("{}; all when none is named", fmt::join(known, ", ")))
+        ->check(CLI::IsMember(known));
     app.add_option("--size", options.size, "samples a side of the terrain")
         ->check(CLI::Range(3, 32769));
     app.add_option("--frames", options.frames, "cameras of a repetition")
@@ -29,6 +31,7 @@ int main(int argc, char** argv) {
         if (wanted("harness")) lodbench::benchmarks::harness_cost();
         if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);
         if (wanted("rays")) lodbench::benchmarks::ray_caster_cost(options);
+        if (wanted("truth")) lodbench::benchmarks::truth_cost(options);
     } catch (const std::exception& error) {
         fmt::print(stderr, "lodbench_benchmarks: {}\n", error.what());
         return 1;

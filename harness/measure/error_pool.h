@@ -1,8 +1,8 @@
 #pragma once
 // Errors in pixels, pooled over samples, pixels and frames: any number of them in bounded memory.
 //
-// Percentiles are nearest-rank over a histogram whose buckets are 2^-16 of their power of two wide,
-// so that a percentile is within 2^-17 (0.0008 %) of the value itself; below 2^-24 px an error
+// Percentiles are nearest-rank over a histogram whose buckets are 2^-15 of their power of two wide,
+// so that a percentile is within 2^-16 (0.0015 %) of the value itself; below 2^-24 px an error
 // counts as 0. Maximum, sums and counts are exact. Integers do not depend on the order in which
 // they are counted and sums are merged in a fixed one: the same errors give the same figures to the
 // bit, whatever the threads did.
@@ -73,7 +73,7 @@ private:
     struct Free {
         void operator()(void* memory) const { std::free(memory); }
     };
-    static constexpr int kBucketBits = 16;      // of the mantissa
+    static constexpr int kBucketBits = 15;      // of the mantissa
     static constexpr int kLeastExponent = -24;  // 6e-8 px: far below what float32 resolves
     static constexpr int kGreatestExponent =
         39;  // beyond any projection of what the near plane lets through

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoBound = kInfinity;
-constexpr double kBucket = 1.0 / (1U << 17U);  // what the header promises, relative
+constexpr double kBucket = 1.0 / (1U << 16U);  // what the header promises, relative
 
 void put(ErrorPool& pool, const std::vector<double>& errors, double bound = kNoBound) {
     ErrorSums sums;
