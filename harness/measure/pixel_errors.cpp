@@ -123,7 +123,8 @@ private:
         const glm::dvec3 point = pixels_.eye() + ray(x, y) * depth;
         const glm::dvec2 place = on_extent(point);
         const std::optional<double> surface = surface_.height(place);
-        if (surface && pixels_between({place.x, place.y, *surface}, point) <= kSettledPx) {
+        // As its error will be measured: straight up or down, also where it lies beyond the border.
+        if (surface && pixels_between({point.x, point.y, *surface}, point) <= kSettledPx) {
             return point;
         }
         for (const double slack : {kDepthSlack, kSliverSlack}) {

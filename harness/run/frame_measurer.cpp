@@ -62,8 +62,9 @@ void FrameMeasurer::measure_realtime(int frame) {
     measure::CapturedSurface surface = capture();
     stage_.draw_picture();
     const std::vector<float> depth = stage_.read_depth();
-    stage_.resume_background();
     meter_->measure_realtime(frame, stage_.camera(), std::move(surface), depth);
+    // Not before: the time that measuring takes is none of the flight's.
+    stage_.resume_background();
 }
 
 void FrameMeasurer::finish(CellResult& result) const {

@@ -54,11 +54,11 @@ struct Scenario {
 
 /// What the command line overrides.
 struct Overrides {
-    std::optional<int> frames;
-    std::optional<Viewport> viewport;
-    std::optional<std::uint64_t> seed;
-    std::optional<int> repetitions;
-    std::optional<bool> truth;
+    std::optional<int> frames = {};
+    std::optional<Viewport> viewport = {};
+    std::optional<std::uint64_t> seed = {};
+    std::optional<int> repetitions = {};
+    std::optional<bool> truth = {};
 };
 
 /// Parses a scenario. Relative files in it are relative to the scenario's folder. Caps file size (1

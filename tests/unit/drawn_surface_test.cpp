@@ -275,8 +275,11 @@ TEST(DrawnSurface, the_highest_wins) {
     EXPECT_EQ(surface.height({1, 1}), 1);
     EXPECT_EQ(surface.height({5, 5}), 4);
     EXPECT_EQ(surface.height({6, 6}), 4);  // its edge is its own
+    EXPECT_EQ(surface.height({6, 3}), 4);  // also where what is lower covers it with its inside
     EXPECT_EQ(surface.height({7, 7}), 3);
-    EXPECT_EQ(displacements(surface, info, 0.5F)[std::size_t(5) * 11 + 5], 3.5F);
+    const std::vector<float> found = displacements(surface, info, 0.5F);
+    EXPECT_EQ(found[std::size_t(5) * 11 + 5], 3.5F);
+    EXPECT_EQ(found[std::size_t(7) * 11 + 6], 3.5F);
 }
 
 TEST(DrawnSurface, a_hole_of_one_cell_is_uncovered_inside_and_only_there) {

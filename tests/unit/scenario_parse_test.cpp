@@ -333,19 +333,18 @@ TEST(Overrides, replace_what_they_name_and_are_checked) {
     Scenario scenario = parse(kLeast + "[measure]\nshots = [0, 60, 119]\n");
     apply({}, scenario);
     EXPECT_EQ(scenario.frames, 120);
-    apply({.frames = 60, .viewport = Viewport{64, 48}, .seed = 5, .repetitions = 2}, scenario);
+    EXPECT_TRUE(scenario.measure.truth);
+    apply({.frames = 60, .viewport = Viewport{64, 48}, .seed = 5, .repetitions = 2, .truth = false},
+          scenario);
+    EXPECT_FALSE(scenario.measure.truth);
     EXPECT_EQ(scenario.frames, 60);
     EXPECT_EQ(scenario.viewport, (Viewport{64, 48}));
     EXPECT_EQ(scenario.seed, 5U);
     EXPECT_EQ(scenario.repetitions, 2);
     EXPECT_THAT(scenario.measure.shots, ElementsAre(0));
-    EXPECT_THROW(apply({.frames = 0, .viewport = {}, .seed = {}, .repetitions = {}}, scenario),
-                 InputError);
-    EXPECT_THROW(
-        apply({.frames = {}, .viewport = Viewport{0, 4}, .seed = {}, .repetitions = {}}, scenario),
-        InputError);
-    EXPECT_THROW(apply({.frames = {}, .viewport = {}, .seed = {}, .repetitions = -1}, scenario),
-                 InputError);
+    EXPECT_THROW(apply({.frames = 0}, scenario), InputError);
+    EXPECT_THROW(apply({.viewport = Viewport{0, 4}}, scenario), InputError);
+    EXPECT_THROW(apply({.repetitions = -1}, scenario), InputError);
 }
 
 TEST(Demo, is_a_scenario_over_the_embedded_terrain) {
