@@ -2,6 +2,9 @@
 // The subjects of lodbench_benchmarks: one file each. Ratios and rates in one run; no pass or fail.
 
 #include <chrono>
+#include <filesystem>
+
+#include "terrain/height_field.h"
 
 namespace lodbench::benchmarks {
 
@@ -9,6 +12,24 @@ struct Options {
     int size = 4097;  ///< samples a side of the terrain
     int frames = 12;
     int repetitions = 3;
+    std::filesystem::path terrain;  ///< empty: a ridged one of `size`
+    double spacing = 10;            ///< metres
+    double vertical_scale = 1;      ///< metres per unit of `terrain`
+
+    [[nodiscard]] lodbench::terrain::TerrainSource source() const {
+        lodbench::terrain::TerrainSource source;
+        source.file = terrain;
+        source.spacing_x = spacing;
+        source.spacing_y = spacing;
+        if (terrain.empty()) {
+            source.synthetic = "ridged";
+            source.rows = size;
+            source.columns = size;
+        } else {
+            source.vertical_scale = vertical_scale;
+        }
+        return source;
+    }
 };
 
 /// Seconds of wall clock that `work` takes.
@@ -26,6 +47,9 @@ void lindstrom_cost(const Options& options);
 /// The reference ray caster: rays and lines of sight per second on one thread, one view after
 /// another.
 void ray_caster_cost(const Options& options);
+
+/// `errors`: recursion, level by level and copy, from 1025 a side up to `size` or the terrain's.
+void errors_cost(const Options& options);
 
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();

@@ -1,4 +1,5 @@
 // lodbench_benchmarks [SUBJECT...] [--size N] [--frames N] [--repetitions N]
+//     [--terrain FILE --spacing METRES --vertical-scale METRES]
 
 #include <fmt/format.h>
 
@@ -13,19 +14,23 @@
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    std::vector<std::string> subjects = {"harness", "lindstrom", "rays"};
-    app.add_option("subjects", subjects, "harness, lindstrom, rays; all when none is named")
-        ->check(CLI::IsMember({"harness", "lindstrom", "rays"}));
+    std::vector<std::string> subjects = {"errors", "harness", "lindstrom", "rays"};
+    app.add_option("subjects", subjects, "errors, harness, lindstrom, rays; all when none is named")
+        ->check(CLI::IsMember({"errors", "harness", "lindstrom", "rays"}));
     app.add_option("--size", options.size, "samples a side of the terrain")
         ->check(CLI::Range(3, 32769));
     app.add_option("--frames", options.frames, "cameras of a repetition")
         ->check(CLI::Range(1, 10000));
     app.add_option("--repetitions", options.repetitions)->check(CLI::Range(1, 1000));
+    app.add_option("--terrain", options.terrain, "a raster; a ridged terrain when none is named");
+    app.add_option("--spacing", options.spacing, "metres between samples");
+    app.add_option("--vertical-scale", options.vertical_scale, "metres per unit of the raster");
     CLI11_PARSE(app, argc, argv);
     const auto wanted = [&](const char* subject) {
         return std::find(subjects.begin(), subjects.end(), subject) != subjects.end();
     };
     try {
+        if (wanted("errors")) lodbench::benchmarks::errors_cost(options);
         if (wanted("harness")) lodbench::benchmarks::harness_cost();
         if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);
         if (wanted("rays")) lodbench::benchmarks::ray_caster_cost(options);
