@@ -27,7 +27,7 @@ constexpr ParamSpec kHybridParams[] = {
     kMetric,
     kCulling,
     kPatchSamples,
-    integer_param("cache_mib", 32, 0, 2048,
+    integer_param("cache_mib", 16, 0, 2048,
                   "size of the cache of triangulations on the GPU, MiB; 0: none")};
 
 constexpr const char* kCitation =
