@@ -92,9 +92,9 @@ INSTANTIATE_TEST_SUITE_P(methods, Watertight,
                          testing::Combine(testing::Values("lindstrom", "hybrid-patches",
                                                           "static-patches"),
                                           testing::ValuesIn(kGrounds)),
-                         [](const auto& info) {
-                             std::string name = std::string(std::get<0>(info.param)) + "_" +
-                                                std::get<1>(info.param).name;
+                         [](const auto& chosen) {
+                             std::string name = std::string(std::get<0>(chosen.param)) + "_" +
+                                                std::get<1>(chosen.param).name;
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });
