@@ -51,6 +51,10 @@ void ray_caster_cost(const Options& options);
 /// `errors`: recursion, level by level and copy, from 1025 a side up to `size` or the terrain's.
 void errors_cost(const Options& options);
 
+/// `patches`: hybrid-patches against static-patches, and its parts on the CPU, from 1025 to 4097 a
+/// side, up to `size`; needs a device.
+void patches_cost(const Options& options);
+
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();
 

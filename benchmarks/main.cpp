@@ -14,9 +14,10 @@
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    std::vector<std::string> subjects = {"errors", "harness", "lindstrom", "rays"};
-    app.add_option("subjects", subjects, "errors, harness, lindstrom, rays; all when none is named")
-        ->check(CLI::IsMember({"errors", "harness", "lindstrom", "rays"}));
+    std::vector<std::string> subjects = {"errors", "harness", "lindstrom", "patches", "rays"};
+    app.add_option("subjects", subjects,
+                   "errors, harness, lindstrom, patches, rays; all when none is named")
+        ->check(CLI::IsMember({"errors", "harness", "lindstrom", "patches", "rays"}));
     app.add_option("--size", options.size, "samples a side of the terrain")
         ->check(CLI::Range(3, 32769));
     app.add_option("--frames", options.frames, "cameras of a repetition")
@@ -34,6 +35,7 @@ int main(int argc, char** argv) {
         if (wanted("harness")) lodbench::benchmarks::harness_cost();
         if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);
         if (wanted("rays")) lodbench::benchmarks::ray_caster_cost(options);
+        if (wanted("patches")) lodbench::benchmarks::patches_cost(options);
     } catch (const std::exception& error) {
         fmt::print(stderr, "lodbench_benchmarks: {}\n", error.what());
         return 1;

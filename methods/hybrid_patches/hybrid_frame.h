@@ -71,9 +71,7 @@ public:
 
     /// Selects, finds what holds, and starts to refine the rest.
     void begin(const Camera& camera) {
-        finish();
-        camera_ = camera;
-        view_ = LebView(grid_, camera, tau_, metric_, 0);
+        aim(camera);
         select();
         sort_out();
         group_.run([this] { refine_all(); });
@@ -82,7 +80,12 @@ public:
     /// Waits for the refinements; helps with them.
     void finish() { group_.wait(); }
 
-    // The steps of `begin`, apart for the benchmark.
+    // The steps of `begin`, apart for the benchmark; the last is done when it returns.
+    void aim(const Camera& camera) {
+        finish();
+        camera_ = camera;
+        view_ = LebView(grid_, camera, tau_, metric_, 0);
+    }
     void select() { hierarchy_.select(view_, metric_, culling_, numbers_); }
     void sort_out() {
         cache_.begin_frame();
