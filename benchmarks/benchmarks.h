@@ -2,6 +2,9 @@
 // The subjects of lodbench_benchmarks: one file each. Ratios and rates in one run; no pass or fail.
 
 #include <chrono>
+#include <filesystem>
+
+#include "terrain/height_field.h"
 
 namespace lodbench::benchmarks {
 
@@ -9,6 +12,24 @@ struct Options {
     int size = 4097;  ///< samples a side of the terrain
     int frames = 12;
     int repetitions = 3;
+    std::filesystem::path terrain;  ///< empty: a ridged one of `size`
+    double spacing = 10;            ///< metres
+    double vertical_scale = 1;      ///< metres per unit of `terrain`
+
+    [[nodiscard]] lodbench::terrain::TerrainSource source() const {
+        lodbench::terrain::TerrainSource source;
+        source.file = terrain;
+        source.spacing_x = spacing;
+        source.spacing_y = spacing;
+        if (terrain.empty()) {
+            source.synthetic = "ridged";
+            source.rows = size;
+            source.columns = size;
+        } else {
+            source.vertical_scale = vertical_scale;
+        }
+        return source;
+    }
 };
 
 /// Seconds of wall clock that `work` takes.
@@ -30,6 +51,13 @@ void ray_caster_cost(const Options& options);
 /// Seconds and memory of one measured frame, all metrics, at 1025 and at the given size; needs a
 /// device.
 void truth_cost(const Options& options);
+
+/// `errors`: recursion, level by level and copy, from 1025 a side up to `size` or the terrain's.
+void errors_cost(const Options& options);
+
+/// `patches`: hybrid-patches against static-patches, and its parts on the CPU, from 1025 to 4097 a
+/// side, up to `size`; needs a device.
+void patches_cost(const Options& options);
 
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();

@@ -1,4 +1,5 @@
 // lodbench_benchmarks [SUBJECT...] [--size N] [--frames N] [--repetitions N]
+//     [--terrain FILE --spacing METRES --vertical-scale METRES]
 
 #include <fmt/format.h>
 
@@ -13,7 +14,8 @@
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    const std::vector<std::string> known = {"harness", "lindstrom", "rays", "truth"};
+    const std::vector<std::string> known = {"errors",  "harness", "lindstrom",
+                                            "patches", "rays",    "truth"};
     std::vector<std::string> subjects = known;
     app.add_option("subjects", subjects,
                    fmt::format("{}; all when none is named", fmt::join(known, ", ")))
@@ -23,14 +25,19 @@ int main(int argc, char** argv) {
     app.add_option("--frames", options.frames, "cameras of a repetition")
         ->check(CLI::Range(1, 10000));
     app.add_option("--repetitions", options.repetitions)->check(CLI::Range(1, 1000));
+    app.add_option("--terrain", options.terrain, "a raster; a ridged terrain when none is named");
+    app.add_option("--spacing", options.spacing, "metres between samples");
+    app.add_option("--vertical-scale", options.vertical_scale, "metres per unit of the raster");
     CLI11_PARSE(app, argc, argv);
     const auto wanted = [&](const char* subject) {
         return std::find(subjects.begin(), subjects.end(), subject) != subjects.end();
     };
     try {
+        if (wanted("errors")) lodbench::benchmarks::errors_cost(options);
         if (wanted("harness")) lodbench::benchmarks::harness_cost();
         if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);
         if (wanted("rays")) lodbench::benchmarks::ray_caster_cost(options);
+        if (wanted("patches")) lodbench::benchmarks::patches_cost(options);
         if (wanted("truth")) lodbench::benchmarks::truth_cost(options);
     } catch (const std::exception& error) {
         fmt::print(stderr, "lodbench_benchmarks: {}\n", error.what());

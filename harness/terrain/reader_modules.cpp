@@ -1,10 +1,12 @@
-// The readers that stand in modules of their own.
+// The readers, and the writer, that stand in modules of their own.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "api/error.h"
 #include "base/modules.h"
 #include "terrain/raster_reader.h"
+#include "terrain/raster_writer.h"
 
 namespace lodbench::terrain {
 
@@ -13,12 +15,14 @@ namespace fs = std::filesystem;
 namespace {
 
 using OpenRaster = RasterReader* (*)(const fs::path&);
+using WriteExr = void (*)(const FloatRaster&, const fs::path&);
 
-OpenRaster load_reader(const fs::path& file, const char* name, const char* what,
-                       const char* option) {
+template <typename Function>
+Function load_function(const fs::path& file, const char* name, const char* function,
+                       const char* what, const char* option) {
     void* symbol = nullptr;
     try {
-        symbol = base::find_in_module(name, "lodbench_open_raster");
+        symbol = base::find_in_module(name, function);
     } catch (const EnvironmentError& error) {
         throw EnvironmentError(fmt::format("{}: {}, but {}", file.string(), what, error.what()));
     }
@@ -29,21 +33,56 @@ OpenRaster load_reader(const fs::path& file, const char* name, const char* what,
             "with -D{}=ON, and install lodbench whole",
             file.string(), what, name, folders[0].string(), folders[1].string(), option));
     }
-    return reinterpret_cast<OpenRaster>(symbol);
+    return reinterpret_cast<Function>(symbol);
 }
 
 }  // namespace
 
 std::unique_ptr<RasterReader> open_with_gdal(const fs::path& file) {
-    const OpenRaster open =
-        load_reader(file, "gdal", "elevation models are read through GDAL", "LODBENCH_WITH_GDAL");
+    const auto open =
+        load_function<OpenRaster>(file, "gdal", "lodbench_open_raster",
+                                  "elevation models are read through GDAL", "LODBENCH_WITH_GDAL");
     return std::unique_ptr<RasterReader>(open(file));
 }
 
 std::unique_ptr<RasterReader> open_with_oiio(const fs::path& file) {
-    const OpenRaster open =
-        load_reader(file, "oiio", "images are read through OpenImageIO", "LODBENCH_WITH_OIIO");
+    const auto open =
+        load_function<OpenRaster>(file, "oiio", "lodbench_open_raster",
+                                  "images are read through OpenImageIO", "LODBENCH_WITH_OIIO");
     return std::unique_ptr<RasterReader>(open(file));
+}
+
+void write_exr(const FloatRaster& raster, const fs::path& file) {
+    if (file.extension() != ".exr") {
+        throw InputError(
+            fmt::format("{}: rasters of floats are written as .exr; give a name that "
+                        "ends so",
+                        file.string()));
+    }
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    if (!fs::is_directory(folder)) {
+        throw InputError(fmt::format("{}: the folder {} does not exist; make it first",
+                                     file.string(), folder.string()));
+    }
+    const auto write =
+        load_function<WriteExr>(file, "oiio", "lodbench_write_exr",
+                                "EXR is written through OpenImageIO", "LODBENCH_WITH_OIIO");
+    fs::path pending = file;
+    pending += fmt::format(".{}.part", getpid());
+    std::error_code error;
+    try {
+        write(raster, pending);
+    } catch (...) {
+        fs::remove(pending, error);
+        throw;
+    }
+    fs::rename(pending, file, error);
+    if (error) {
+        std::error_code ignored;
+        fs::remove(pending, ignored);
+        throw EnvironmentError(
+            fmt::format("{}: cannot be renamed: {}", file.string(), error.message()));
+    }
 }
 
 }  // namespace lodbench::terrain

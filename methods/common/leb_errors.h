@@ -28,12 +28,20 @@ enum class ErrorKind { midpoint, accumulated };
     return static_cast<float>(value * (1 + 0x1p-23));
 }
 
-/// Level by level, bottom-up, the vertices of a level in parallel (Loeffler 2010, section 3): each
-/// level needs the finished one below it and nothing of its own.
+// Three ways to the same bits (Loeffler 2010, section 3 and table 1). A level needs the finished
+// one below it and nothing of its own.
+
+/// ppcs: the paper's level-by-level scheme, at the speed of memory. The levels follow each other
+/// row by row in one pass over the grid, a level's row as soon as the rows that it needs are there,
+/// so that several levels find theirs in the cache; bands of rows in parallel; vector code.
 void compute_errors_by_level(LebGrid& grid, ErrorKind kind);
 
-/// The same by recursion over the vertex graph: the readable form, and the slow comparator of the
-/// above. Results are equal to the bit. Recursion depth is the number of levels.
+/// ppcs as the paper states it: one pass a level, each vertex by itself, a level's rows in
+/// parallel. The readable form, and the oracle of the above.
+void compute_errors_by_level_plain(LebGrid& grid, ErrorKind kind);
+
+/// rpcs: recursion over the vertex graph, the paper's comparator. Its depth is the number of
+/// levels.
 void compute_errors_recursively(LebGrid& grid, ErrorKind kind);
 
 /// Upper bound of the length, in metres and in space, of every edge of the full-resolution mesh.

@@ -3,13 +3,12 @@
 // errors; the CPU refines into one generalised triangle strip a frame. What is CPU only lies in
 // methods/common (leb_*.h); here it is uploaded and drawn. Parameters and deviations: README.md.
 
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "api/method.h"
+#include "common/leb_heights.h"
 #include "common/leb_refiner.h"
 #include "gl/device.h"
 #include "gl/embedded_shaders.h"
@@ -19,8 +18,8 @@
 namespace lodbench::lindstrom {
 namespace {
 
-constexpr GLuint kHeightsBinding = gl::kFirstFreeBinding;  // the shader says 2
-static_assert(kHeightsBinding == 2);
+// What the shader says.
+static_assert(common::LebHeights::kBinding == 2 && common::LebHeights::kTextureUnit == 0);
 
 common::RefinerOptions options_from(const Params& params) {
     return {.tau = params.real("tau"),
@@ -72,26 +71,14 @@ public:
 
     void upload(gl::Device& device) override {
         device_ = &device;
-        const int limit = device.info().max_texture_size;
-        const bool in_buffer = columns_ > limit || rows_ > limit;
+        heights_ =
+            common::LebHeights(device, "lindstrom: heights", refiner_->grid(), rows_, columns_);
         program_ = gl::Program(
             device, "lindstrom", embedded_shaders(),
             {{GL_VERTEX_SHADER, "lindstrom.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
-            in_buffer ? std::map<std::string, std::string>{{"HEIGHTS_IN_BUFFER", "1"}}
-                      : std::map<std::string, std::string>{});
+            heights_.defines());
         program_.set("padded_size", refiner_->grid().size());
         program_.set("terrain_size", glm::ivec2(columns_, rows_));
-        if (in_buffer) {
-            heights_buffer_ =
-                gl::Buffer(device, "lindstrom: heights",
-                           std::size_t(rows_) * std::size_t(columns_) * sizeof(float));
-        } else {
-            heights_texture_ =
-                gl::Texture(device, "lindstrom: heights", GL_TEXTURE_2D, GL_R32F, columns_, rows_);
-            heights_texture_.set_parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-            heights_texture_.set_parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        }
-        upload_heights();
     }
 
     void select(const Camera& camera, const Clock&) override {
@@ -99,11 +86,7 @@ public:
     }
 
     void draw(const View&) override {
-        if (heights_buffer_) {
-            heights_buffer_.bind_storage(kHeightsBinding);
-        } else {
-            heights_texture_.bind(0);
-        }
+        heights_.bind();
         device_->draw_elements(program_, ring_.vertices(), GL_TRIANGLE_STRIP,
                                GLsizei(refiner_->strip().indices().size()), GL_UNSIGNED_INT);
     }
@@ -116,42 +99,18 @@ public:
 
     void release(gl::Device&) override {
         ring_ = {};
-        heights_buffer_ = {};
-        heights_texture_ = {};
+        heights_ = {};
         program_ = {};
     }
 
 private:
-    /// From the grid, in bands of rows: the terrain is read once, and no second copy of it is made.
-    void upload_heights() {
-        constexpr int kBand = 64;
-        std::vector<float> band(std::size_t(kBand) * std::size_t(columns_));
-        for (int first = 0; first < rows_; first += kBand) {
-            const int rows = std::min(kBand, rows_ - first);
-            float* out = band.data();
-            for (int row = first; row < first + rows; ++row) {
-                const common::LebVertex* vertex = &refiner_->grid().at({row, 0});
-                for (int column = 0; column < columns_; ++column) *out++ = vertex[column].height;
-            }
-            if (heights_buffer_) {
-                const std::size_t offset =
-                    std::size_t(first) * std::size_t(columns_) * sizeof(float);
-                heights_buffer_.write(offset, std::size_t(out - band.data()) * sizeof(float),
-                                      band.data());
-            } else {
-                heights_texture_.write(0, 0, first, columns_, rows, GL_RED, GL_FLOAT, band.data());
-            }
-        }
-    }
-
     common::RefinerOptions options_;
     int columns_ = 0;
     int rows_ = 0;
     std::optional<common::LebRefiner> refiner_;
     gl::Device* device_ = nullptr;
     gl::Program program_;
-    gl::Texture heights_texture_;
-    gl::Buffer heights_buffer_;  ///< instead of the texture where the terrain exceeds its limit
+    common::LebHeights heights_;
     StripRing ring_;
 };
 

@@ -18,7 +18,7 @@ TEST(CommandLine, names_the_word_that_is_no_command_and_the_commands) {
     EXPECT_THAT(top.output, HasSubstr("there is no command 'fly'; known: list, describe, run"));
     EXPECT_THAT(top.output, Not(HasSubstr("cell"))) << "the hidden command stays hidden";
     EXPECT_THAT(run_lodbench({"terrain", "fly"}, folder.path()).output,
-                HasSubstr("there is no command 'fly'; known: info, import, synth"));
+                HasSubstr("there is no command 'fly'; known: info, import, synth, errors"));
 }
 
 TEST(CommandLine, a_repeatable_option_leaves_what_follows_its_value_alone) {
@@ -38,7 +38,8 @@ TEST(CommandLine, a_repeatable_option_leaves_what_follows_its_value_alone) {
 TEST(CommandLine, an_unknown_method_is_refused_alike_by_every_command) {
     const ScratchFolder folder;
     const std::string words =
-        "no method 'nope' was found; known: full-grid, lindstrom, pgm, template";
+        "no method 'nope' was found; known: full-grid, hybrid-patches, lindstrom, pgm, "
+        "static-patches, template";
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"describe", "nope"},
           {"mesh", "nope", "-o", "m.ply"},

@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <string>
 
+#include "common/leb_row_kernels.h"
 #include "leb_test_terrain.h"
 
 namespace lodbench::common {
@@ -35,23 +40,108 @@ test::Terrains terrains() {
     return all;
 }
 
-TEST(LebErrors, by_level_equal_the_recursion_to_the_bit) {
-    for (const auto& terrain : terrains()) {
-        for (const ErrorKind kind : kKinds) {
-            LebGrid by_level(*terrain);
-            LebGrid recursive(*terrain);
-            compute_errors_by_level(by_level, kind);
-            compute_errors_recursively(recursive, kind);
-            for (std::size_t i = 0; i < by_level.vertex_count(); ++i) {
-                const LebVertex& a = by_level.vertices()[i];
-                const LebVertex& b = recursive.vertices()[i];
-                ASSERT_EQ(std::bit_cast<std::uint32_t>(a.error),
-                          std::bit_cast<std::uint32_t>(b.error))
-                    << i;
-                ASSERT_EQ(std::bit_cast<std::uint32_t>(a.radius),
-                          std::bit_cast<std::uint32_t>(b.radius))
-                    << i;
+using ComputeErrors = void (*)(LebGrid&, ErrorKind);
+
+/// Empty, or the first vertex whose bits differ.
+std::string difference(const LebGrid& a, const LebGrid& b) {
+    for (std::size_t i = 0; i < a.vertex_count(); ++i) {
+        const LebVertex& u = a.vertices()[i];
+        const LebVertex& v = b.vertices()[i];
+        if (std::bit_cast<std::uint32_t>(u.error) == std::bit_cast<std::uint32_t>(v.error) &&
+            std::bit_cast<std::uint32_t>(u.radius) == std::bit_cast<std::uint32_t>(v.radius)) {
+            continue;
+        }
+        const auto size = std::size_t(a.size());
+        return "row " + std::to_string(i / size) + ", column " + std::to_string(i % size) +
+               ": error " + std::to_string(u.error) + " and " + std::to_string(v.error) +
+               ", radius " + std::to_string(u.radius) + " and " + std::to_string(v.radius);
+    }
+    return "";
+}
+
+/// All three ways, with this many threads and with one, on this terrain.
+void expect_equal_bits(const Terrain& terrain) {
+    LebGrid recursive(terrain);
+    LebGrid other(terrain);
+    for (const ErrorKind kind : kKinds) {
+        compute_errors_recursively(recursive, kind);
+        for (const ComputeErrors compute :
+             {&compute_errors_by_level, &compute_errors_by_level_plain}) {
+            for (const int threads : {1, 2, 5}) {
+                tbb::task_arena arena(threads);
+                // Rubbish, so that what is not written is seen.
+                for (std::size_t i = 0; i < other.vertex_count(); ++i) {
+                    other.vertices()[i].error = -1;
+                    other.vertices()[i].radius = -1;
+                }
+                for (const int row : {0, other.size() - 1}) {  // the corners split nothing
+                    for (const int column : {0, other.size() - 1}) {
+                        other.at({row, column}).error = 0;
+                        other.at({row, column}).radius = 0;
+                    }
+                }
+                arena.execute([&] { compute(other, kind); });
+                const bool fast = compute == &compute_errors_by_level;
+                ASSERT_EQ(difference(recursive, other), "")
+                    << (fast ? "streamed" : "plain") << ", " << threads << " threads, "
+                    << other.size() << " a side";
             }
+        }
+    }
+}
+
+TEST(LebErrors, by_level_equal_the_recursion_to_the_bit) {
+    for (const auto& terrain : terrains()) expect_equal_bits(*terrain);
+}
+
+TEST(LebErrors, by_level_equal_the_recursion_to_the_bit_at_every_size) {
+    unsigned seed = 100;
+    for (int size = 3; size <= 1025; size = 2 * size - 1) {
+        expect_equal_bits(*test::random_terrain(size, size, seed++, {10, 7}));
+        expect_equal_bits(*test::random_terrain(size / 2 + 2, size, seed++));  // padded
+        expect_equal_bits(*test::step_terrain(size, size - 1));
+    }
+}
+
+/// Heights of any size that a float holds: sums, squares and differences that need double, errors
+/// beyond the largest float, denormal ones.
+TEST(LebErrors, by_level_equal_the_recursion_to_the_bit_at_the_ends_of_float) {
+    std::mt19937 random(5);
+    const float extremes[] = {
+        0.0F,        1e-45F,   -1e-38F, 1.0F,
+        16777215.0F, -3.4e38F, 3.4e38F, std::numeric_limits<float>::epsilon()};
+    for (const int size : {5, 129, 1025}) {
+        expect_equal_bits(*test::make_terrain(
+            size, size, [&](int, int) { return extremes[random() % std::size(extremes)]; },
+            {1e-3, 1e4}));
+    }
+}
+
+TEST(LebErrors, of_every_instruction_set_are_the_same_bits) {
+    constexpr int kCount = 67;  // no multiple of a vector's length
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> heights(-500, 4000);
+    std::vector<float> in(20 * (kCount + 1));
+    for (float& value : in) value = std::abs(heights(random));
+    const auto at = [&](int i) { return in.data() + i * (kCount + 1); };
+    const auto row = [&](int i) { return VertexRow{at(i), at(i + 1), at(i + 2)}; };
+    const VertexRow children[4] = {row(0), row(3), row(6), row(9)};
+    const RowKernelList all = all_row_kernels();
+    for (const ErrorKind kind : kKinds) {
+        std::vector<std::vector<float>> results;
+        for (int k = 0; k < all.count; ++k) {
+            const RowKernels& kernels = *all.kernels[k];
+            std::vector<float> out(8 * (kCount + 1));
+            const auto to = [&](int i) {
+                return VertexRow{at(12), out.data() + 2 * i * (kCount + 1),
+                                 out.data() + (2 * i + 1) * (kCount + 1)};
+            };
+            kernels.leaves({to(0), at(13), at(14)}, kCount);
+            kernels.edges(kind, {to(1), at(13), at(14)}, children, 123.25, kCount);
+            kernels.centres(kind, to(2), true, at(15), at(16), children, 81, 64, kCount);
+            kernels.centres_of_leaves(kind, to(3), false, at(15), at(16), children, 81, 64, kCount);
+            results.push_back(out);
+            EXPECT_EQ(results.front(), out) << kernels.instruction_set;
         }
     }
 }

@@ -1,5 +1,6 @@
-// The only file that knows OpenImageIO. The format is named by the extension, never guessed from
-// the content, so that no other of its readers gets a stranger's bytes.
+// The only file that knows OpenImageIO: reads height maps, writes rasters of floats. The format is
+// named by the extension, never guessed from the content, so that no other of its readers gets a
+// stranger's bytes.
 
 #include "terrain/readers/module.h"
 
@@ -177,4 +178,23 @@ private:
 
 lodbench::terrain::RasterReader* lodbench_open_raster(const std::filesystem::path& file) {
     return new lodbench::terrain::OiioReader(file);
+}
+
+void lodbench_write_exr(const lodbench::terrain::FloatRaster& raster,
+                        const std::filesystem::path& file) {
+    const auto refuse = [&](const std::string& words) {
+        throw lodbench::EnvironmentError(fmt::format("{}: cannot be written; {}", file.string(),
+                                                     lodbench::terrain::one_line(words)));
+    };
+    const auto output = OIIO::ImageOutput::create("openexr");
+    if (!output) refuse(OIIO::geterror());
+    OIIO::ImageSpec spec(raster.columns, raster.rows, int(raster.channels.size()),
+                         OIIO::TypeDesc::FLOAT);
+    spec.channelnames = raster.channels;
+    spec.attribute("compression", "zip");
+    for (const auto& [name, text] : raster.attributes) spec.attribute(name, text);
+    if (!output->open(file.string(), spec) ||
+        !output->write_image(OIIO::TypeDesc::FLOAT, raster.values.data()) || !output->close()) {
+        refuse(output->geterror());
+    }
 }

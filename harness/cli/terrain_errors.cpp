@@ -1,0 +1,123 @@
+// lodbench terrain errors: the a-priori refinement criteria of longest-edge bisection, to look at
+// and to check with other tools.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "cli/terrain_options.h"
+#include "common/leb_errors.h"
+#include "report/json.h"
+#include "terrain/raster_writer.h"
+
+namespace lodbench::cli {
+namespace {
+
+using common::ErrorKind;
+
+struct Options : TerrainOptions {
+    std::string scheme = "ppcs";
+    std::string error = "midpoint";
+};
+
+using ComputeErrors = void (*)(common::LebGrid&, ErrorKind);
+
+ComputeErrors scheme_of(const std::string& name) {
+    if (name == "rpcs") return common::compute_errors_recursively;
+    if (name == "ppcs-plain") return common::compute_errors_by_level_plain;
+    return common::compute_errors_by_level;
+}
+
+/// The terrain's samples without padding; two channels, metres.
+terrain::FloatRaster raster_of(const common::LebGrid& grid, const TerrainInfo& info,
+                               const Options& options) {
+    terrain::FloatRaster raster;
+    raster.rows = info.rows;
+    raster.columns = info.columns;
+    raster.channels = {"error", "radius"};
+    raster.attributes = {{"lodbench:scheme", options.scheme},
+                         {"lodbench:error", options.error},
+                         {"lodbench:terrain", info.name},
+                         {"lodbench:checksum", info.checksum}};
+    raster.values.reserve(2 * std::size_t(info.rows) * std::size_t(info.columns));
+    for (int row = 0; row < info.rows; ++row) {
+        for (int column = 0; column < info.columns; ++column) {
+            const common::LebVertex& vertex = grid.at({row, column});
+            raster.values.push_back(vertex.error);
+            raster.values.push_back(vertex.radius);
+        }
+    }
+    return raster;
+}
+
+void run(const Options& options, const CLI::App& command) {
+    const terrain::LoadedTerrain loaded = load(options, command);
+    const TerrainInfo& info = loaded.field->info();
+    common::LebGrid grid(*loaded.field);
+    const auto start = std::chrono::steady_clock::now();
+    scheme_of(options.scheme)(
+        grid, options.error == "accumulated" ? ErrorKind::accumulated : ErrorKind::midpoint);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    terrain::write_exr(raster_of(grid, info, options), options.output);
+    // What everything descends from.
+    const common::LebVertex& centre = grid.at({grid.size() / 2, grid.size() / 2});
+    if (options.json) {
+        Json::Value object;
+        object["name"] = info.name;
+        object["scheme"] = options.scheme;
+        object["error"] = options.error;
+        object["rows"] = info.rows;
+        object["columns"] = info.columns;
+        object["padded_size"] = grid.size();
+        object["seconds"] = seconds;
+        object["centre_error_m"] = centre.error;
+        object["centre_radius_m"] = centre.radius;
+        object["written"] = options.output;
+        fmt::print("{}\n", report::to_text(object, true));
+        return;
+    }
+    fmt::print("name      {}\n", info.name);
+    fmt::print("size      {} rows x {} columns, padded to {} x {}\n", info.rows, info.columns,
+               grid.size(), grid.size());
+    fmt::print("scheme    {}, {} errors, {:.1f} ms, {:.2f} ns a sample\n", options.scheme,
+               options.error, seconds * 1e3, seconds * 1e9 / double(grid.vertex_count()));
+    fmt::print("centre    error {} m, radius {} m\n", centre.error, centre.radius);
+    fmt::print("written   {}: channels error and radius, metres\n", options.output);
+}
+
+}  // namespace
+
+void add_terrain_errors(CLI::App& parent) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *parent.add_subcommand("errors",
+                                               "Writes the error and the nested radius of each "
+                                               "sample, as longest-edge bisection has them");
+    auto* file =
+        command.add_option("FILE", options->source.file, "Elevation model, image or raw file");
+    auto* form = command.add_option("--synthetic", options->source.synthetic, "A synthetic form");
+    file->excludes(form);
+    command
+        .add_option("-o,--output", options->output,
+                    "OUT.exr: two channels of 32-bit floats in metres, error and radius")
+        ->required();
+    command
+        .add_option("--scheme", options->scheme,
+                    "ppcs: level by level, streamed; ppcs-plain: level by level; rpcs: recursion. "
+                    "All give the same bits")
+        ->check(CLI::IsMember({"ppcs", "ppcs-plain", "rpcs"}))
+        ->capture_default_str();
+    command
+        .add_option("--error", options->error,
+                    "midpoint: the largest of vertex and descendants; accumulated: their sum")
+        ->check(CLI::IsMember({"midpoint", "accumulated"}))
+        ->capture_default_str();
+    add_shape(command, *options);
+    add_overrides(command, *options);
+    add_file_overrides(command, *options);
+    command.footer(forms_text());
+    command.callback([&command, options] { run(*options, command); });
+}
+
+}  // namespace lodbench::cli

@@ -1,0 +1,134 @@
+#pragma once
+// hybrid-patches flown without a GPU.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "hybrid_patches/hybrid_frame.h"
+#include "leb_mesh.h"
+
+namespace lodbench::hybrid_patches {
+
+using common::LebRefiner;
+using common::RefinerOptions;
+using test::Mesh;
+
+/// A terrain with all that hybrid-patches has but the GPU, whose cache is played by an array.
+class Flight {
+public:
+    Flight(const Terrain& terrain, const RefinerOptions& options, int segments,
+           std::size_t cache_bytes)
+        : options_(options),
+          refiner_(terrain, options),
+          hierarchy_(refiner_.grid(), segments, terrain.info().rows, terrain.info().columns),
+          cache_(hierarchy_.size(), cache_bytes),
+          buffer_(cache_bytes / 2),
+          frame_(refiner_.grid(), hierarchy_, cache_, options.tau, options.metric,
+                 options.culling) {}
+
+    /// What is drawn: patch and strip, in the order of the hierarchy.
+    struct Drawn {
+        std::uint32_t patch;
+        std::vector<std::uint16_t> strip;
+        SphereOfValidity sphere;
+        bool reused;
+    };
+
+    std::vector<Drawn> fly(const Camera& camera) {
+        frame_.begin(camera);
+        frame_.finish();
+        std::vector<Drawn> drawn;
+        std::vector<const PatchCache::Entry*> entries;
+        for (const SelectedPatch& patch : frame_.selected()) {
+            const PatchCache::Entry* entry = patch.kept;
+            drawn.push_back({patch.patch, {}, {}, entry != nullptr});
+            if (entry == nullptr) {
+                made_for_[patch.patch] = camera;
+                const Refinement& made = frame_.refinement(patch);
+                entry = cache_.insert(made.patch, made.sphere, std::uint32_t(made.strip.size()),
+                                      made.triangles);
+                drawn.back().strip = made.strip;
+                drawn.back().sphere = made.sphere;
+                if (entry == nullptr) ++streamed;
+            }
+            if (entry != nullptr && !drawn.back().reused) {
+                std::copy(drawn.back().strip.begin(), drawn.back().strip.end(),
+                          buffer_.begin() + std::ptrdiff_t(entry->block.offset / 2));
+            }
+            entries.push_back(entry);
+        }
+        // As the GPU reads them: after all of this frame was written.
+        for (std::size_t i = 0; i < drawn.size(); ++i) {
+            if (entries[i] == nullptr) continue;
+            const auto first = buffer_.begin() + std::ptrdiff_t(entries[i]->block.offset / 2);
+            drawn[i].strip.assign(first, first + entries[i]->index_count);
+            drawn[i].sphere = entries[i]->sphere;
+        }
+        return drawn;
+    }
+
+    [[nodiscard]] Mesh mesh(const std::vector<Drawn>& drawn) const {
+        std::vector<test::Triangle> triangles;
+        for (const Drawn& patch : drawn) append(patch.patch, patch.strip, triangles);
+        return {refiner_.grid().size(), std::move(triangles)};
+    }
+    void append(std::uint32_t patch, std::span<const std::uint16_t> strip,
+                std::vector<test::Triangle>& triangles) const {
+        const Triangle& t = hierarchy_.patch(patch).triangle;
+        const int segments = hierarchy_.segments();
+        std::vector<std::uint32_t> vertices;
+        for (const int name : strip) {
+            const int a = name / (segments + 1);
+            const int b = name % (segments + 1);
+            const int row = a * (t.left.row - t.apex.row) + b * (t.right.row - t.apex.row);
+            const int column =
+                a * (t.left.column - t.apex.column) + b * (t.right.column - t.apex.column);
+            EXPECT_EQ(row % segments, 0);
+            EXPECT_EQ(column % segments, 0);
+            vertices.push_back(std::uint32_t(refiner_.grid().index(
+                {t.apex.row + row / segments, t.apex.column + column / segments})));
+        }
+        const std::vector<test::Triangle> more = test::expand(vertices);
+        triangles.insert(triangles.end(), more.begin(), more.end());
+    }
+    [[nodiscard]] Refinement from_scratch(std::uint32_t patch, const Camera& camera) const {
+        Refinement result;
+        refine(hierarchy_, refiner_.grid(), refiner_.view(camera), options_.metric, camera, patch,
+               result);
+        return result;
+    }
+    [[nodiscard]] std::vector<std::uint32_t> corners(const std::vector<Drawn>& drawn) const {
+        std::vector<std::uint32_t> all;
+        for (const Drawn& patch : drawn) {
+            const Triangle& t = hierarchy_.patch(patch.patch).triangle;
+            for (const Sample s : {t.left, t.apex, t.right}) {
+                all.push_back(std::uint32_t(refiner_.grid().index(s)));
+            }
+        }
+        return all;
+    }
+    [[nodiscard]] const LebRefiner& refiner() const { return refiner_; }
+    [[nodiscard]] const PatchHierarchy& hierarchy() const { return hierarchy_; }
+    [[nodiscard]] const PatchCache& cache() const { return cache_; }
+    [[nodiscard]] HybridFrame& frame() { return frame_; }
+    /// The camera for which the patch was refined last.
+    [[nodiscard]] const Camera& made_for(std::uint32_t patch) const { return made_for_.at(patch); }
+    int streamed = 0;
+
+private:
+    RefinerOptions options_;
+    LebRefiner refiner_;
+    PatchHierarchy hierarchy_;
+    PatchCache cache_;
+    std::vector<std::uint16_t> buffer_;
+    std::map<std::uint32_t, Camera> made_for_;
+    HybridFrame frame_;
+};
+
+}  // namespace lodbench::hybrid_patches

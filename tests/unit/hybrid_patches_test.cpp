@@ -1,0 +1,389 @@
+// Patches: cuts that fit together, triangulations that hold as long as their sphere says, and a
+// cache that never changes what is drawn.
+
+#include <gtest/gtest.h>
+
+#include "hybrid_flight.h"
+
+namespace lodbench::hybrid_patches {
+namespace {
+
+using common::ErrorKind;
+
+std::vector<RefinerOptions> all_options(double tau) {
+    std::vector<RefinerOptions> all;
+    for (const ErrorKind error : {ErrorKind::midpoint, ErrorKind::accumulated}) {
+        for (const Metric metric : {Metric::euclidean, Metric::planar}) {
+            all.push_back({tau, error, metric, false});
+        }
+    }
+    return all;
+}
+
+/// 300 frames: the first third slow, the second fast and turning, the third jumping.
+std::vector<Camera> slow_fast_and_jumping(const TerrainInfo& info) {
+    std::mt19937 random(3);
+    std::vector<Camera> cameras;
+    const glm::dvec2 size = info.extent_max() - info.extent_min();
+    for (int i = 0; i < 300; ++i) {
+        if (i >= 200) {
+            // Twice each, so that a jump is followed by a frame in which all holds.
+            cameras.push_back(i % 2 == 0 ? test::random_camera(info, random) : cameras.back());
+            continue;
+        }
+        Camera camera;
+        const double way = i < 100 ? i * 1e-5 : 1e-3 + (i - 100) * 1e-2;
+        camera.position = {info.origin + size * (0.1 + 0.6 * way), info.max_height + 40 - i * 0.01};
+        camera.orientation = Camera::look({1, i < 100 ? 0.8 : 0.8 - 0.01 * (i - 100), -0.35});
+        camera.vertical_fov = i < 120 ? 0.8 : 0.9;
+        cameras.push_back(camera);
+    }
+    return cameras;
+}
+
+test::Terrains terrains() {
+    test::Terrains all;
+    all.push_back(test::random_terrain(65, 65, 1));
+    all.push_back(test::random_terrain(100, 37, 2, {10, 3}));
+    all.push_back(test::random_terrain(2, 2, 3));
+    all.push_back(test::random_terrain(9, 5, 4));
+    all.push_back(test::step_terrain(40, 65));
+    all.push_back(test::plane_terrain(33, 33));
+    return all;
+}
+
+TEST(HybridPatches, regular_patches_of_every_cut_fit_together) {
+    std::mt19937 random(7);
+    std::set<std::size_t> sizes;
+    for (const auto& terrain : terrains()) {
+        for (const int segments : {2, 8, 64}) {
+            for (const double tau : {0.25, 4.0}) {
+                for (const RefinerOptions& options : all_options(tau)) {
+                    const Flight flight(*terrain, options, segments, 0);
+                    const PatchHierarchy& patches = flight.hierarchy();
+                    std::vector<std::uint16_t> strip;
+                    EveryVertex every;
+                    PatchStripBuilder<EveryVertex>(strip).build(patches.patch(0).triangle, segments,
+                                                                patches.levels(), every);
+                    for (int frame = 0; frame < 3; ++frame) {
+                        const Camera camera = test::random_camera(terrain->info(), random);
+                        std::vector<std::uint32_t> cut;
+                        patches.select(flight.refiner().view(camera), options.metric, false, cut);
+                        std::vector<test::Triangle> triangles;
+                        for (const std::uint32_t patch : cut) {
+                            flight.append(patch, strip, triangles);
+                        }
+                        const Mesh mesh(flight.refiner().grid().size(), std::move(triangles));
+                        ASSERT_EQ(test::defect_of(mesh), "")
+                            << terrain->info().rows << " rows, " << segments << " segments";
+                        sizes.insert(cut.size());
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(sizes.size(), 20U) << "the cameras must make cuts of many sizes";
+}
+
+TEST(HybridPatches, have_nested_criteria_that_cover_what_a_patch_lacks) {
+    std::mt19937 random(15);
+    for (int seed = 0; seed < 20; ++seed) {
+        // A few peaks: errors of neighbours differ as much as they can.
+        std::map<std::pair<int, int>, float> peaks;
+        for (int i = 0; i < 6; ++i) peaks[{random() % 65, random() % 65}] = float(1 + i);
+        const auto terrain = test::make_terrain(65, 65, [&](int row, int column) {
+            return peaks.contains({row, column}) ? peaks[{row, column}] : 0.0F;
+        });
+        const Flight flight(*terrain, {1, ErrorKind::midpoint, Metric::euclidean, false}, 4, 0);
+        const PatchHierarchy& patches = flight.hierarchy();
+        const LebGrid& grid = flight.refiner().grid();
+        std::map<std::pair<int, int>, LebVertex> vertices;
+        for (std::uint32_t i = 0; i < patches.size(); ++i) {
+            if (PatchHierarchy::depth_of(i) == patches.deepest()) continue;
+            const Sample middle = patches.patch(i).triangle.middle();
+            vertices[{middle.row, middle.column}] = patches.criterion_vertex(middle);
+        }
+        ASSERT_GT(vertices.size(), 50U);
+        for (const auto& [place, vertex] : vertices) {
+            const common::Children below = common::children({place.first, place.second});
+            for (const Sample child : below.vertices) {
+                const auto found = vertices.find({child.row, child.column});
+                if (found == vertices.end()) continue;
+                EXPECT_GE(vertex.error, found->second.error);
+                EXPECT_GT(vertex.radius, found->second.radius);
+            }
+        }
+        for (std::uint32_t i = 0; i < patches.size(); ++i) {
+            if (PatchHierarchy::depth_of(i) == patches.deepest()) continue;
+            const Triangle& patch = patches.patch(i).triangle;
+            std::vector<Triangle> parts = {patch};
+            for (int level = 0; level < patches.levels(); ++level) {
+                std::vector<Triangle> halves;
+                for (const Triangle& part : parts) {
+                    for (const Triangle& half : part.halves()) halves.push_back(half);
+                }
+                parts = halves;
+            }
+            for (const Triangle& part : parts) {
+                EXPECT_GE(patches.criterion_vertex(patch.middle()).error,
+                          grid.at(part.middle()).error);
+            }
+        }
+    }
+}
+
+struct Tally {
+    int reused = 0, refined = 0, partial = 0, streamed = 0;
+    std::uint64_t evicted = 0;
+};
+
+/// Flies slowly, fast and in jumps, and looks at every strip and at every 23rd mesh.
+void expect_lindstroms_mesh(const Terrain& terrain, const RefinerOptions& options,
+                            std::size_t cache_bytes, Tally& tally) {
+    Flight flight(terrain, options, 8, cache_bytes);
+    int frame = 0;
+    for (const Camera& camera : slow_fast_and_jumping(terrain.info())) {
+        const auto drawn = flight.fly(camera);
+        ASSERT_LE(flight.cache().used_bytes(), cache_bytes);
+        for (const Flight::Drawn& patch : drawn) {
+            ++(patch.reused ? tally.reused : tally.refined);
+            ASSERT_EQ(patch.strip,
+                      flight.from_scratch(patch.patch, flight.made_for(patch.patch)).strip);
+            ASSERT_EQ(patch.strip, flight.from_scratch(patch.patch, camera).strip)
+                << "frame " << frame << ", patch " << patch.patch;
+        }
+        if (++frame % 23 != 0) continue;
+        const Mesh mesh = flight.mesh(drawn);
+        ASSERT_EQ(test::defect_of(mesh), "") << "frame " << frame;
+        // All that lindstrom has, and besides only the corners of patches.
+        std::set<std::uint32_t> expected = test::active_set(flight.refiner(), camera);
+        tally.partial +=
+            expected.size() > 9 && expected.size() < flight.refiner().grid().vertex_count();
+        const auto corners = flight.corners(drawn);
+        expected.insert(corners.begin(), corners.end());
+        ASSERT_EQ(mesh.vertices, expected) << "frame " << frame;
+    }
+    tally.streamed += flight.streamed;
+    tally.evicted += flight.cache().evicted();
+}
+
+TEST(HybridPatches, of_every_age_make_lindstroms_mesh_of_the_current_viewpoint) {
+    Tally tally;
+    const auto terrain = test::random_terrain(65, 65, 1);
+    for (const double tau : {0.5, 4.0}) {
+        for (const RefinerOptions& options : all_options(tau)) {
+            expect_lindstroms_mesh(*terrain, options, std::size_t(1) << 20, tally);
+        }
+    }
+    EXPECT_GT(tally.reused, 5000);
+    EXPECT_GT(tally.refined, 5000);
+    EXPECT_GT(tally.partial, 60);
+    EXPECT_EQ(tally.evicted, 0U);
+}
+
+TEST(HybridPatches, are_drawn_alike_where_the_cache_is_too_small) {
+    Tally tally;
+    const auto terrain = test::random_terrain(129, 129, 14);
+    for (const std::size_t cache_bytes : {std::size_t(0), BlockPool::kLargest}) {
+        for (const bool culling : {false, true}) {
+            Tally one;
+            const RefinerOptions options{1, ErrorKind::accumulated, Metric::euclidean, culling};
+            if (culling) {
+                Flight flight(*terrain, options, 8, cache_bytes);
+                for (const Camera& camera : slow_fast_and_jumping(terrain->info())) {
+                    for (const Flight::Drawn& patch : flight.fly(camera)) {
+                        ASSERT_EQ(patch.strip, flight.from_scratch(patch.patch, camera).strip);
+                    }
+                }
+                tally.evicted += flight.cache().evicted();
+                continue;
+            }
+            expect_lindstroms_mesh(*terrain, options, cache_bytes, one);
+            EXPECT_GT(one.streamed, 0);
+            EXPECT_EQ(one.reused > 0, cache_bytes > 0);
+        }
+    }
+    EXPECT_GT(tally.evicted, 0U) << "patches out of view must make room for others";
+}
+
+TEST(SphereOfValidity, never_keeps_a_stale_patch) {
+    const auto terrain = test::random_terrain(129, 129, 5);
+    std::mt19937 random(6);
+    const auto real = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    int inside = 0, turned = 0, changed = 0, tried = 0;
+    for (const RefinerOptions& options : all_options(1.0)) {
+        const Flight flight(*terrain, options, 16, 0);
+        for (int i = 0; i < 200; ++i) {
+            const Camera camera = test::random_camera(terrain->info(), random);
+            const auto patch = std::uint32_t(random() % flight.hierarchy().size());
+            const Refinement made = flight.from_scratch(patch, camera);
+            if (!std::isfinite(made.sphere.radius)) continue;
+            const LebView view = flight.refiner().view(camera);
+            for (int k = 0; k < 8; ++k) {
+                const glm::dvec3 direction =
+                    glm::normalize(glm::dvec3(real(-1, 1), real(-1, 1), real(-1, 1)));
+                Camera moved = camera;
+                // Just within, then well beyond.
+                moved.position += direction * made.sphere.radius * (k < 6 ? 0.999 : 4.0);
+                if (options.metric == Metric::planar && k % 2 == 0) {
+                    moved.position = camera.position;
+                    moved.orientation = Camera::look(
+                        camera.forward() + direction * (0.9 * made.sphere.radius /
+                                                        std::max(made.sphere.farthest, 1.0)));
+                }
+                const bool holds = made.sphere.holds(moved.position, moved.forward(), view.scale);
+                const bool same = flight.from_scratch(patch, moved).strip == made.strip;
+                if (holds) {
+                    ++inside;
+                    turned += moved.orientation != camera.orientation;
+                    ASSERT_TRUE(same) << "camera " << i << ", move " << k;
+                } else {
+                    ++tried;
+                    changed += !same;
+                }
+            }
+            EXPECT_TRUE(made.sphere.holds(camera.position, camera.forward(), view.scale));
+            EXPECT_FALSE(made.sphere.holds(camera.position, camera.forward(), view.scale * 1.001))
+                << "another lens or tolerance";
+        }
+    }
+    EXPECT_GT(inside, 1000);
+    EXPECT_GT(turned, 100);
+    EXPECT_GT(changed, tried / 4) << "a sphere that is far too small would never be seen above";
+}
+
+TEST(SphereOfValidity, is_the_distance_to_the_nearest_sphere_of_equation_7) {
+    // One raised sample: the vertices that it makes active have error 8, all others 0.
+    const auto terrain = test::make_terrain(
+        5, 5, [](int row, int column) { return row == 1 && column == 1 ? 8.0F : 0.0F; });
+    const Flight flight(*terrain, {1.0, ErrorKind::midpoint, Metric::euclidean, false}, 4, 0);
+    const LebGrid& grid = flight.refiner().grid();
+    Camera camera;
+    camera.position = {terrain->info().position(2, 2), 50000};
+    const LebView view = flight.refiner().view(camera);
+    double expected = 1e300;
+    // Of the south-western base triangle's vertices, the one on its western side: (2, 0).
+    const std::uint32_t west = 3;
+    const Sample middle = flight.hierarchy().patch(west).triangle.middle();
+    ASSERT_EQ(middle, (Sample{2, 0}));
+    const LebVertex& vertex = grid.at(middle);
+    const glm::dvec3 p(terrain->info().position(2, 0), vertex.height);
+    expected = std::abs(view.scale * double(vertex.error) + double(vertex.radius) -
+                        glm::length(p - camera.position));
+    const Refinement made = flight.from_scratch(west, camera);
+    EXPECT_EQ(made.triangles, 1U) << "inactive from here: it alone is tested";
+    EXPECT_EQ(made.tested, 1U);
+    EXPECT_NEAR(made.sphere.radius, expected, 1e-6);
+}
+
+int reused_per_mille_on_a_smooth_flight(double tau) {
+    terrain::TerrainSource source;
+    source.synthetic = "ridged";
+    source.rows = source.columns = 513;
+    const auto terrain = terrain::load_terrain(source);
+    Flight flight(*terrain, {tau, ErrorKind::midpoint, Metric::euclidean, true}, 16, 1 << 20);
+    int reused = 0;
+    std::size_t selected = 0;
+    for (int i = 0; i < 40; ++i) {
+        Camera camera;
+        camera.position = {terrain->info().origin + glm::dvec2(300 + i, 400),
+                           terrain->info().max_height + 100};
+        camera.orientation = Camera::look({1, 0.6, -0.3});
+        const auto drawn = flight.fly(camera);
+        if (i == 0) continue;
+        selected += drawn.size();
+        for (const Flight::Drawn& patch : drawn) reused += patch.reused;
+    }
+    EXPECT_GT(selected, 0U);
+    return int(1000 * std::size_t(reused) / selected);
+}
+
+TEST(HybridPatches, are_reused_more_the_larger_the_tolerance) {  // claim L6
+    const int fine = reused_per_mille_on_a_smooth_flight(0.5);
+    const int medium = reused_per_mille_on_a_smooth_flight(1);
+    const int coarse = reused_per_mille_on_a_smooth_flight(2);
+    EXPECT_GT(fine, 0);
+    EXPECT_GT(medium, fine);
+    EXPECT_GT(coarse, medium);
+}
+
+TEST(HybridPatches, are_never_reused_after_a_jump) {
+    const auto terrain = test::random_terrain(129, 129, 9);
+    Flight flight(*terrain, {1, ErrorKind::midpoint, Metric::euclidean, false}, 8, 1 << 20);
+    std::mt19937 random(10);
+    for (int i = 0; i < 30; ++i) {
+        for (const Flight::Drawn& patch :
+             flight.fly(test::random_camera(terrain->info(), random))) {
+            EXPECT_FALSE(patch.reused);
+        }
+    }
+}
+
+TEST(HybridPatches, culling_leaves_out_patches_and_changes_none) {
+    const auto terrain = test::random_terrain(100, 129, 11);
+    const RefinerOptions whole{1, ErrorKind::midpoint, Metric::euclidean, false};
+    RefinerOptions culled = whole;
+    culled.culling = true;
+    Flight all(*terrain, whole, 8, 0);
+    Flight some(*terrain, culled, 8, 0);
+    std::mt19937 random(12);
+    std::size_t left_out = 0;
+    for (int i = 0; i < 40; ++i) {
+        const Camera camera = test::random_camera(terrain->info(), random);
+        std::map<std::uint32_t, std::vector<std::uint16_t>> expected;
+        for (const Flight::Drawn& patch : all.fly(camera)) expected[patch.patch] = patch.strip;
+        const auto drawn = some.fly(camera);
+        left_out += expected.size() - drawn.size();
+        for (const Flight::Drawn& patch : drawn) {
+            ASSERT_TRUE(expected.contains(patch.patch));
+            EXPECT_EQ(expected[patch.patch], patch.strip);
+        }
+    }
+    EXPECT_GT(left_out, 100U);
+}
+
+TEST(BlockPool, gives_places_that_do_not_overlap_and_takes_them_back) {
+    constexpr std::size_t kBytes = 4 * BlockPool::kLargest;
+    BlockPool pool(kBytes);
+    std::mt19937 random(13);
+    std::vector<BlockPool::Block> blocks;
+    std::vector<char> taken(kBytes, 0);
+    std::size_t refused = 0;
+    for (int i = 0; i < 4000; ++i) {
+        if (!blocks.empty() && random() % 5 < 2) {
+            const std::size_t which = random() % blocks.size();
+            std::fill_n(taken.begin() + std::ptrdiff_t(blocks[which].offset), blocks[which].bytes(),
+                        char(0));
+            pool.release(blocks[which]);
+            blocks[which] = blocks.back();
+            blocks.pop_back();
+            continue;
+        }
+        const std::size_t bytes = 1 + random() % (random() % 8 == 0 ? BlockPool::kLargest : 3000);
+        const auto block = pool.allocate(bytes);
+        if (!block) {
+            ++refused;
+            continue;
+        }
+        ASSERT_GE(block->bytes(), bytes);
+        ASSERT_LE(block->offset + block->bytes(), kBytes);
+        for (std::size_t b = 0; b < block->bytes(); ++b) {
+            ASSERT_EQ(taken[block->offset + b], 0);
+            taken[block->offset + b] = 1;
+        }
+        blocks.push_back(*block);
+        ASSERT_EQ(pool.used(), std::size_t(std::count(taken.begin(), taken.end(), char(1))));
+    }
+    EXPECT_GT(refused, 0U);
+    for (const BlockPool::Block& block : blocks) pool.release(block);
+    EXPECT_EQ(pool.used(), 0U);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_TRUE(pool.allocate(BlockPool::kLargest)) << "halves did not join again";
+    }
+    EXPECT_FALSE(pool.allocate(1));
+}
+
+}  // namespace
+}  // namespace lodbench::hybrid_patches
