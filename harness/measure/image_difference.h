@@ -39,7 +39,7 @@ struct ImageDifference {
 [[nodiscard]] ImageDifference image_difference(const RgbPicture& a, const RgbPicture& b);
 
 /// Peak signal-to-noise ratio in decibels, 10 log10(255^2 / mean squared error); +infinity for
-/// equal pictures (error 0), which results write as null.
+/// equal pictures (error 0), which results write as "inf".
 [[nodiscard]] double psnr_db(double mean_squared_error);
 
 }  // namespace lodbench::measure

@@ -127,15 +127,35 @@ private:
         if (surface && pixels_between({point.x, point.y, *surface}, point) <= kSettledPx) {
             return point;
         }
-        for (const double slack : {kDepthSlack, kSliverSlack}) {
-            for (const glm::dvec2& shift : kShifts) {
-                const glm::dvec3 direction = ray(x, y, shift);
-                const auto met = surface_.meets_surface(pixels_.eye(), direction,
-                                                        depth * (1 - slack), depth * (1 + slack));
-                if (met) return pixels_.eye() + direction * *met;
-            }
+        return point_on_surface(x, y, depth).value_or(point);
+    }
+
+    /// Where a ray beside the pixel's meets l_f nearest to a depth that is not on it.
+    [[nodiscard]] std::optional<glm::dvec3> point_on_surface(std::size_t x, std::size_t y,
+                                                             double depth) const {
+        std::optional<glm::dvec3> nearest;
+        double off = kSliverSlack * depth;
+        double least = kInfinity;
+        double greatest = -kInfinity;
+        for (const glm::dvec2& shift : kShifts) {
+            const auto met = meets_surface(x, y, shift, depth, 2 * kSliverSlack);
+            if (!met) continue;
+            least = std::min(least, *met);
+            greatest = std::max(greatest, *met);
+            if (std::abs(*met - depth) > off) continue;
+            off = std::abs(*met - depth);
+            nearest = pixels_.eye() + ray(x, y, shift) * *met;
         }
-        return point;
+        if (off > kDepthSlack * depth && greatest - least < kEdgeOn * depth) return std::nullopt;
+        return nearest;
+    }
+
+    /// The depth at which a ray beside the pixel's meets a triangle of l_f, about a depth.
+    [[nodiscard]] std::optional<double> meets_surface(std::size_t x, std::size_t y,
+                                                      const glm::dvec2& shift, double depth,
+                                                      double slack) const {
+        return surface_.meets_surface(pixels_.eye(), ray(x, y, shift), depth * (1 - slack),
+                                      depth * (1 + slack));
     }
 
     [[nodiscard]] double pixels_between(const glm::dvec3& a, const glm::dvec3& b) const {
@@ -165,15 +185,17 @@ private:
 
     /// A skirt stands where something was drawn, and what was drawn does not lie on l_f.
     [[nodiscard]] bool shows_skirt(std::size_t x, std::size_t y, double depth) const {
-        const glm::dvec3 direction = ray(x, y);
-        if (!surface_.meets_skirt(pixels_.eye(), direction, depth * (1 - kDepthSlack),
-                                  depth * (1 + kDepthSlack))) {
-            return false;
-        }
-        const glm::dvec3 point = pixels_.eye() + direction * depth;
-        const glm::dvec2 place = on_extent(point);
-        const std::optional<double> surface = surface_.height(place);
-        return !surface || pixels_between({place.x, place.y, *surface}, point) > kSlackPx;
+        const bool stands =
+            std::any_of(kShifts.begin(), kShifts.end(), [&](const glm::dvec2& shift) {
+                return surface_
+                    .meets_skirt(pixels_.eye(), ray(x, y, shift), depth * (1 - kDepthSlack),
+                                 depth * (1 + kDepthSlack))
+                    .has_value();
+            });
+        if (!stands) return false;
+        const glm::dvec3 point = pixels_.eye() + ray(x, y) * depth;
+        const std::optional<double> surface = surface_.height(on_extent(point));
+        return !surface || pixels_between({point.x, point.y, *surface}, point) > kSlackPx;
     }
 
     /// The ray and those around it all pass below l_f before what was drawn, which lies on another
@@ -193,10 +215,7 @@ private:
     /// What was drawn lies on some triangle: its depth is not a sliver's.
     [[nodiscard]] bool shows_surface(std::size_t x, std::size_t y, double depth) const {
         return std::any_of(kShifts.begin(), kShifts.end(), [&](const glm::dvec2& shift) {
-            return surface_
-                .meets_surface(pixels_.eye(), ray(x, y, shift), depth * (1 - kDepthSlack),
-                               depth * (1 + kDepthSlack))
-                .has_value();
+            return meets_surface(x, y, shift, depth, kDepthSlack).has_value();
         });
     }
 

@@ -10,15 +10,21 @@
 //   A verdict on a pixel (crack, sky against terrain) stands only if the rays kSlackPx to each side
 //   give it too.
 // - kDepthSlack: depth is interpolated in float32 from the differences between a triangle's
-// vertices, so
-//   that a pixel's depth is uncertain by some hundreds of units of 2^-24. On slivers, triangles
-//   seen edge-on, it is uncertain by far more, kSliverSlack: the differences are divided by an area
-//   of few subpixels.
+// vertices,
+//   so that a pixel's depth is uncertain by some hundreds of units of 2^-24.
+// - kSliverSlack: where the surface is seen edge-on, depth is uncertain by far more. Rasterisers
+// decide
+//   with snapped vertices whether a pixel is covered, but interpolate between unsnapped ones: at a
+//   triangle that is thinner than the subpixel grid they extrapolate, hundreds of metres at 15 km.
+//   A pixel counts as edge-on where depth changes by kEdgeOn of itself between the rays kSlackPx
+//   around it.
 //
 // A drawn point that lies within kSettledPx of l_f is taken as it is. One that does not is looked
-// for on l_f, where a ray within kSlackPx meets it within the slack of depth: so a sliver's depth
-// makes no error, and a method that draws every sample has at most kSettledPx. Where no such ray
-// meets l_f the point stays what it is: the rasteriser drew what was not sent to it.
+// for on l_f, where a ray within kSlackPx meets it within kDepthSlack, or edge-on within
+// kSliverSlack: so the noise of depth makes no error, and a method that draws every sample has at
+// most kSettledPx. Edge-on this can forgive a fault of the rasteriser of up to kSliverSlack / (8
+// kEdgeOn) = 1/2 px, elsewhere of kDepthSlack along the ray. Where no such ray meets l_f the point
+// stays what it is: the rasteriser drew what was not sent to it.
 
 #include <cstdint>
 #include <span>
@@ -34,6 +40,7 @@ namespace lodbench::measure {
 inline constexpr double kSlackPx = 1.0 / 16;
 inline constexpr double kDepthSlack = 1.0 / 4096;
 inline constexpr double kSliverSlack = 1.0 / 64;
+inline constexpr double kEdgeOn = 1.0 / 256;
 inline constexpr double kSettledPx = 1.0 / 64;
 
 /// What was found at a pixel, as bits.
@@ -54,7 +61,7 @@ struct PixelErrors {
     std::vector<std::uint8_t> marks;
     std::uint64_t crack_pixels = 0, skirt_pixels = 0, silhouette_pixels = 0;
     std::uint64_t clipped = 0;  ///< segments that were clipped at near depth
-    /// Pixels whose ray starts below l_f: whether it passes a crack cannot be told.
+    /// Pixels whose ray starts below l_f: whether it passes a crack cannot be told; no crack is.
     std::uint64_t unjudged_pixels = 0;
     double silhouette_max = 0;   ///< offset of the first terrain row of a column, pixels
     double silhouette_mean = 0;  ///< over all columns

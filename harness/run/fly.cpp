@@ -69,7 +69,7 @@ public:
         prepare();
         choose_frames();
         const int replays = measures_realtime() ? 3 : 2;
-        signs_.frames_total = (replays - 1) * scenario_.warmup_frames + replays * scenario_.frames;
+        signs_.frames_total = replays * (scenario_.warmup_frames + scenario_.frames);
         fly_for_time();
         // The method's own: what measuring needs comes later.
         result_.peak_rss_bytes = peak_rss_bytes();
@@ -89,6 +89,7 @@ public:
 
 private:
     void open();
+    void make_stage();
     void prepare();
     void choose_frames();
     void fly_for_time();
@@ -152,9 +153,7 @@ void Flight::open() {
     result_.terrain_name = terrain_->info().name;
     result_.terrain_checksum = terrain_->info().checksum;
     signs_.enter(Call::start);
-    stage_ = std::make_unique<Stage>(
-        StageSetup{terrain_, spec_.plugin, spec_.method, spec_.settings, spec_.device}, signs_);
-    stage_->check_state(true);
+    make_stage();
     const gl::DeviceInfo& info = stage_->device().info();
     result_.gl_vendor = info.vendor;
     result_.gl_renderer = info.renderer;
@@ -166,6 +165,13 @@ void Flight::open() {
     }
     verdict_ = measure::test_timer(stage_->device());
     result_.timer_verdict = verdict_.text;
+}
+
+void Flight::make_stage() {
+    stage_.reset();  // one context at a time
+    stage_ = std::make_unique<Stage>(
+        StageSetup{terrain_, spec_.plugin, spec_.method, spec_.settings, spec_.device}, signs_);
+    stage_->check_state(true);
 }
 
 void Flight::prepare() {
@@ -244,6 +250,7 @@ void Flight::fly_in_lockstep() {
     begin_replay(Replay::lockstep);
     measurer_ = std::make_unique<FrameMeasurer>(
         *stage_, measures_truth() ? result_.claimed_px : std::nullopt, measures_truth());
+    warm_up();  // as the timing replay began
     std::map<std::string, double> sums;
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         begin_frame(frame);
@@ -251,6 +258,8 @@ void Flight::fly_in_lockstep() {
         const std::uint64_t uploaded = stage_->method_uploaded_bytes();
         stage_->select(camera_at(frame), clock_at(frame));
         stage_->settle();
+        // What is counted, captured and drawn from here on is one selection.
+        stage_->pause_background();
         const std::uint64_t draw_calls = stage_->device().draw_calls();
         record.triangles = stage_->count_primitives();
         record.draw_calls = stage_->device().draw_calls() - draw_calls;
@@ -268,6 +277,7 @@ void Flight::fly_in_lockstep() {
             }
         }
         if (spec_.repetition == 0 && std::ranges::find(shots_, frame) != shots_.end()) shoot(frame);
+        stage_->resume_background();
     }
     for (const auto& [name, sum] : sums) {
         result_.counters.emplace_back(name, sum / scenario_.frames);
@@ -291,19 +301,28 @@ void Flight::measure_frame(int frame) {
     if (measured) measurer_->measure(result_.frames[std::size_t(frame)]);
 }
 
-/// Frame f begins when the frames before it had taken in the timing replay what they took there;
-/// the time that measuring takes stands still.
+/// A method as fresh as in the timing replay: what the lockstep replay loaded and settled would
+/// flatter it. Frame f begins when the frames before it had taken what they took in the timing
+/// replay; the time that measuring takes stands still.
 void Flight::fly_in_real_time() {
+    stage_->release();
+    make_stage();
+    stage_->prepare();
+    stage_->upload();
+    stage_->resize(scenario_.viewport);
+    measurer_->move_to(*stage_);
     begin_replay(Replay::realtime);
     warm_up();
     const Stopwatch clock;
     double begins_s = 0;
     double measuring_s = 0;
+    double late_s = 0;
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         begin_frame(frame);
         while (clock.seconds() - measuring_s < begins_s) {
             std::this_thread::sleep_for(std::chrono::microseconds(200));
         }
+        late_s = std::max(late_s, clock.seconds() - measuring_s - begins_s);
         begins_s += result_.frames[std::size_t(frame)].wall_ms * 1e-3;
         const Camera camera = camera_at(frame);
         stage_->select(camera, clock_at(frame));
@@ -311,8 +330,18 @@ void Flight::fly_in_real_time() {
         glFinish();
         if (frame % scenario_.measure.every != 0) continue;
         const Stopwatch measuring;
+        stage_->pause_background();
         measurer_->measure_realtime(frame);
+        // Not before: the time that measuring takes is none of the flight's.
+        stage_->resume_background();
         measuring_s += measuring.seconds();
+    }
+    constexpr double kTolerated = 0.05;
+    if (late_s > kTolerated * begins_s) {
+        result_.warnings.push_back(fmt::format(
+            "the real-time replay fell {:.1f} ms behind the timing replay's pace, over {:.1f} ms: "
+            "background work had more time than that pace gives it",
+            late_s * 1e3, begins_s * 1e3));
     }
 }
 

@@ -13,63 +13,69 @@
 namespace lodbench::run {
 
 FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed, bool truth)
-    : stage_(stage) {
-    if (truth) meter_.emplace(stage.terrain().samples(), stage.terrain().info(), claimed);
+    : stage_(&stage), terrain_(stage.shared_terrain()) {
+    if (truth) meter_.emplace(terrain_->samples(), terrain_->info(), claimed);
 }
 
 measure::CapturedSurface FrameMeasurer::capture() {
-    measure::CapturedSurface surface = stage_.capture();
+    measure::CapturedSurface surface = stage_->capture();
     const auto broken = measure::nonfinite_count(surface);
     if (broken > 0) {
         throw MethodFailure(
             fmt::format("draw of plugin {} sent {} of {} vertices that are not finite",
-                        stage_.plugin_name(), broken, surface.vertices.size()));
+                        stage_->plugin_name(), broken, surface.vertices.size()));
     }
     return surface;
 }
 
 void FrameMeasurer::take(int frame, const FrameRecord& record, FrameRecord* before) {
-    stage_.pause_background();
     measure::CapturedSurface surface = capture();
-    stage_.resume_background();
     if (surface.triangle_count() != record.triangles) {
         throw MethodFailure(fmt::format(
             "draw of plugin {} generated {} triangles, of which {} went through "
             "gl::Device: draw calls must go through it",
-            stage_.plugin_name(), record.triangles.value_or(0), surface.triangle_count()));
+            stage_->plugin_name(), record.triangles.value_or(0), surface.triangle_count()));
     }
     nondegenerate_ = measure::nondegenerate_count(surface);
     if (!meter_) return;
-    meter_->take(frame, stage_.camera(), std::move(surface),
+    meter_->take(frame, stage_->camera(), std::move(surface),
                  before == nullptr ? nullptr : &before->truth);
 }
 
 void FrameMeasurer::measure(FrameRecord& record) {
     record.triangles_nondegenerate = nondegenerate_;
     if (!meter_) return;
-    stage_.pause_background();
-    stage_.draw_picture();
-    const std::vector<float> depth = stage_.read_depth();
-    std::vector<std::uint8_t> drawn = stage_.read_color();
-    stage_.resume_background();
-    stage_.draw_reference_picture();
-    record.truth = meter_->measure(depth, std::move(drawn), stage_.read_color());
+    stage_->draw_picture();
+    const std::vector<float> depth = stage_->read_depth();
+    std::vector<std::uint8_t> drawn = stage_->read_color();
+    stage_->draw_reference_picture();
+    record.truth = meter_->measure(depth, std::move(drawn), stage_->read_color());
 }
 
 void FrameMeasurer::measure_realtime(int frame) {
     if (!meter_) return;
-    stage_.pause_background();
     measure::CapturedSurface surface = capture();
-    stage_.draw_picture();
-    const std::vector<float> depth = stage_.read_depth();
-    meter_->measure_realtime(frame, stage_.camera(), std::move(surface), depth);
-    // Not before: the time that measuring takes is none of the flight's.
-    stage_.resume_background();
+    stage_->draw_picture();
+    meter_->measure_realtime(frame, stage_->camera(), std::move(surface), stage_->read_depth());
 }
 
 void FrameMeasurer::finish(CellResult& result) const {
     if (!meter_) return;
-    result.truth = truth_record(meter_->summary());
+    const measure::TruthSummary summary = meter_->summary();
+    result.truth = truth_record(summary);
+    if (summary.walls > 0) {
+        result.warnings.push_back(fmt::format(
+            "up to {} upright triangles of a frame stand above the surface, where no error is "
+            "measured on them: skirts hang down",
+            summary.walls));
+    }
+    if (summary.unjudged > 0) {
+        result.warnings.push_back(
+            fmt::format("{} of {} measured pixels look from below the surface: whether they show a "
+                        "crack cannot "
+                        "be told",
+                        summary.unjudged, summary.pixels));
+    }
 }
 
 void FrameMeasurer::write_picture(const std::filesystem::path& path,

@@ -3,6 +3,7 @@
 // surface, depth and pictures to whoever knows the truth.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -12,11 +13,15 @@
 
 namespace lodbench::run {
 
+/// The method's background work is paused by the caller while anything here is called.
 class FrameMeasurer {
 public:
     /// `truth`: measure it; otherwise triangles are counted only. `claimed`: the method's bound in
     /// pixels.
     FrameMeasurer(Stage& stage, std::optional<double> claimed, bool truth);
+
+    /// Goes on with another stage of the same method over the same terrain.
+    void move_to(Stage& stage) { stage_ = &stage; }
 
     /// Captures the frozen selection; what popped since the frame before goes into `before`, where
     /// that was measured. Throws MethodFailure for vertices that are not finite and for triangles
@@ -36,7 +41,8 @@ public:
 private:
     [[nodiscard]] measure::CapturedSurface capture();
 
-    Stage& stage_;
+    Stage* stage_;
+    std::shared_ptr<const terrain::HeightField> terrain_;  ///< outlives the stage
     std::optional<measure::TruthMeter> meter_;
     std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
 };

@@ -98,6 +98,9 @@ public:
     [[nodiscard]] const MethodInfo& method() const { return info_; }
     [[nodiscard]] const Params& params() const { return params_; }
     [[nodiscard]] const terrain::HeightField& terrain() const { return *setup_.terrain; }
+    [[nodiscard]] const std::shared_ptr<const terrain::HeightField>& shared_terrain() const {
+        return setup_.terrain;
+    }
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] const std::string& plugin_name() const { return plugin_name_; }  ///< file name
 

@@ -65,7 +65,9 @@ Json::Value truth_record(const measure::TruthSummary& truth) {
     json["pixel_error_realtime_px"] =
         truth.pixel_realtime ? errors(*truth.pixel_realtime, truth.pixel_realtime_worst)
                              : Json::Value::null;
-    json["crack_pixels"] = total_and_max(truth.crack_total, truth.crack_max);
+    json["crack_pixels"] = truth.unjudged < truth.pixels
+                               ? total_and_max(truth.crack_total, truth.crack_max)
+                               : Json::Value::null;
     json["skirt_pixels"] = total_and_max(truth.skirt_total, truth.skirt_max);
     json["uncovered_samples"] = count(truth.screen.uncovered);
     Json::Value& silhouette = json["silhouette_px"];
@@ -93,6 +95,7 @@ Json::Value truth_record(const measure::TruthSummary& truth) {
     json["bound_honesty"] = number_or_inf(truth.bound_honesty);
     json["clipped_segments"] = count(truth.clipped);
     json["unjudged_pixels"] = count(truth.unjudged);
+    json["wall_triangles"] = count(truth.walls);
     return json;
 }
 

@@ -20,6 +20,9 @@ struct FloatRaster {
     std::vector<std::pair<std::string, std::string>> attributes;  ///< name, text
 };
 
+/// Throws InputError as write_exr does.
+void require_exr_name(const std::filesystem::path& file);
+
 /// Writes `file` (extension .exr: 32-bit floats, one layer, named channels, compressed without
 /// loss), whole or not at all. OpenImageIO is loaded at the first call. Throws InputError for
 /// another extension or a folder that is not there, EnvironmentError where the disk refuses.

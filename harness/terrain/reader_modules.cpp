@@ -52,7 +52,7 @@ std::unique_ptr<RasterReader> open_with_oiio(const fs::path& file) {
     return std::unique_ptr<RasterReader>(open(file));
 }
 
-void write_exr(const FloatRaster& raster, const fs::path& file) {
+void require_exr_name(const fs::path& file) {
     if (file.extension() != ".exr") {
         throw InputError(
             fmt::format("{}: rasters of floats are written as .exr; give a name that "
@@ -64,6 +64,10 @@ void write_exr(const FloatRaster& raster, const fs::path& file) {
         throw InputError(fmt::format("{}: the folder {} does not exist; make it first",
                                      file.string(), folder.string()));
     }
+}
+
+void write_exr(const FloatRaster& raster, const fs::path& file) {
+    require_exr_name(file);
     const auto write =
         load_function<WriteExr>(file, "oiio", "lodbench_write_exr",
                                 "EXR is written through OpenImageIO", "LODBENCH_WITH_OIIO");

@@ -278,6 +278,61 @@ TEST(SphereOfValidity, is_the_distance_to_the_nearest_sphere_of_equation_7) {
     EXPECT_NEAR(made.sphere.radius, expected, 1e-6);
 }
 
+/// Tests vertices by the formulas of equations 7 and 8, and remembers the nearest sphere.
+struct NearestSphere {
+    const LebGrid& grid;
+    const LebView& view;
+    const Camera& camera;
+    Metric metric;
+    double distance = std::numeric_limits<double>::infinity();  ///< to its surface
+    bool of_an_active_vertex = false;
+    int bounding = 0;  ///< vertices with an error
+
+    bool active(int row, int column) {
+        const LebVertex& vertex = grid.at({row, column});
+        if (vertex.error == 0) return false;
+        ++bounding;
+        const glm::dvec3 p(grid.north_west().x + column * grid.spacing().x,
+                           grid.north_west().y - row * grid.spacing().y, vertex.height);
+        const bool planar = metric == Metric::planar;
+        const double reach =
+            (view.scale + (planar ? 1 : 0)) * double(vertex.error) + double(vertex.radius);
+        const double away = planar ? glm::dot(p - camera.position, camera.forward())
+                                   : glm::length(p - camera.position);
+        if (std::abs(reach - away) < distance) {
+            distance = std::abs(reach - away);
+            of_an_active_vertex = reach > away;
+        }
+        return reach > away;
+    }
+};
+
+TEST(SphereOfValidity, is_the_nearest_of_all_tested_vertices_active_or_not) {
+    const auto terrain = test::random_terrain(129, 129, 16);
+    std::mt19937 random(17);
+    int active = 0, inactive = 0;
+    for (const RefinerOptions& options : all_options(1.0)) {
+        const Flight flight(*terrain, options, 16, 0);
+        const PatchHierarchy& patches = flight.hierarchy();
+        for (int i = 0; i < 200; ++i) {
+            const Camera camera = test::random_camera(terrain->info(), random);
+            const LebView view = flight.refiner().view(camera);
+            const auto patch = std::uint32_t(random() % patches.size());
+            NearestSphere nearest{flight.refiner().grid(), view, camera, options.metric};
+            std::vector<std::uint16_t> strip;
+            PatchStripBuilder<NearestSphere>(strip).build(patches.patch(patch).triangle, 16,
+                                                          patches.levels(), nearest);
+            const Refinement made = flight.from_scratch(patch, camera);
+            ASSERT_EQ(made.strip, strip);
+            ASSERT_NEAR(made.sphere.radius, nearest.distance, 1e-6);
+            if (nearest.bounding < 2) continue;
+            ++(nearest.of_an_active_vertex ? active : inactive);
+        }
+    }
+    EXPECT_GT(active, 100);
+    EXPECT_GT(inactive, 100);
+}
+
 int reused_per_mille_on_a_smooth_flight(double tau) {
     terrain::TerrainSource source;
     source.synthetic = "ridged";
@@ -342,6 +397,56 @@ TEST(HybridPatches, culling_leaves_out_patches_and_changes_none) {
         }
     }
     EXPECT_GT(left_out, 100U);
+}
+
+constexpr SphereOfValidity kEverywhere{.scale = 1, .radius = 1e9};
+
+TEST(PatchCache, gives_up_after_freeing_four_times_the_room_asked_for) {
+    constexpr std::uint32_t kSmall = BlockPool::kSmallest / 2;  // indices
+    constexpr std::uint32_t kLarge = BlockPool::kLargest / 2;
+    constexpr std::uint32_t kInOne = BlockPool::kLargest / BlockPool::kSmallest;
+    constexpr std::uint32_t kCount = 16 * kInOne;
+    PatchCache cache(kCount + 2, 16 * BlockPool::kLargest);
+    cache.begin_frame();
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        ASSERT_NE(cache.insert(i, kEverywhere, kSmall, 1), nullptr);
+    }
+    cache.begin_frame();
+    // One in each of the largest blocks is needed now.
+    for (std::uint32_t i = 0; i < kCount; i += kInOne) {
+        ASSERT_NE(cache.find(i, {}, {}, 1), nullptr);
+    }
+    EXPECT_EQ(cache.insert(kCount, kEverywhere, kLarge, 1), nullptr);
+    EXPECT_EQ(cache.evicted(), 4 * kInOne);
+    EXPECT_EQ(cache.used_bytes(), 12 * BlockPool::kLargest);
+    // What was freed serves others; the longest unselected were taken, not more.
+    EXPECT_NE(cache.insert(kCount + 1, kEverywhere, kLarge / 2, 1), nullptr);
+    EXPECT_EQ(cache.evicted(), 4 * kInOne);
+    EXPECT_EQ(cache.find(1, {}, {}, 1), nullptr);
+    EXPECT_NE(cache.find(kCount - 1, {}, {}, 1), nullptr);
+}
+
+TEST(PatchHierarchy, refuses_more_patches_than_memory_is_meant_for) {
+    TerrainInfo info;
+    info.name = "wide";
+    info.rows = 2;
+    info.columns = 32769;
+    EXPECT_NO_THROW(PatchHierarchy::require_few(info, 16));
+    info.columns = 16385;
+    EXPECT_NO_THROW(PatchHierarchy::require_few(info, 8));
+    info.columns = 16386;
+    try {
+        PatchHierarchy::require_few(info, 8);
+        ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "terrain 'wide' has 67108860 patches of 9 samples an edge, at most 16777216 "
+                     "are taken: use a larger patch_samples");
+    }
+    for (const auto& terrain : terrains()) {
+        const Flight flight(*terrain, {}, 8, 0);
+        EXPECT_EQ(PatchHierarchy::count_of(terrain->info(), 8), flight.hierarchy().size());
+    }
 }
 
 TEST(BlockPool, gives_places_that_do_not_overlap_and_takes_them_back) {

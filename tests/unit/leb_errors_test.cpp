@@ -103,6 +103,24 @@ TEST(LebErrors, by_level_equal_the_recursion_to_the_bit_at_every_size) {
     }
 }
 
+/// From 2049 a side on, what the bands leave is large enough to be cut into bands itself.
+TEST(LebErrors, by_level_equal_the_recursion_to_the_bit_where_bands_come_twice) {
+    expect_equal_bits(*test::random_terrain(2049, 2049, 200, {10, 7}));
+    expect_equal_bits(*test::random_terrain(1100, 2049, 201));  // padded
+}
+
+#ifdef LODBENCH_WITH_OIIO
+TEST(LebErrors, by_level_equal_the_recursion_to_the_bit_on_puget_sound) {
+    terrain::TerrainSource source;
+    source.file = LODBENCH_SOURCE_DIR "/scenarios/terrain/puget_sound_1025_160m.png";
+    source.spacing_x = source.spacing_y = 160;
+    source.vertical_scale = 0.1;
+    const auto terrain = terrain::load_terrain(source);
+    EXPECT_GT(terrain->info().max_height, 4000);
+    expect_equal_bits(*terrain);
+}
+#endif
+
 /// Heights of any size that a float holds: sums, squares and differences that need double, errors
 /// beyond the largest float, denormal ones.
 TEST(LebErrors, by_level_equal_the_recursion_to_the_bit_at_the_ends_of_float) {

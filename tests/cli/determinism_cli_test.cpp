@@ -1,0 +1,81 @@
+// Two lockstep replays give the same truth to the bit on one machine, whatever its threads do.
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include "cli/frames_csv.h"
+#include "cli/run_lodbench.h"
+
+namespace lodbench::test {
+namespace {
+
+/// Of all processors that this process may use only the first.
+void stay_on_one_processor() {
+    cpu_set_t allowed;
+    if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
+    std::size_t first = 0;
+    while (first < CPU_SETSIZE && !CPU_ISSET(first, &allowed)) ++first;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(first, &one);
+    sched_setaffinity(0, sizeof one, &one);
+}
+
+TEST(Determinism, two_runs_give_the_same_truth_to_the_bit_on_all_processors_and_on_one) {
+    const ScratchFolder folder;
+    const fs::path file = folder.path() / "small.toml";
+    std::ofstream(file) << "name = \"small\"\n[terrain]\nsynthetic = \"ridged\"\nrows = 129\n"
+                           "columns = 129\nspacing = 10\nshape.height = 400\n"
+                           "[viewport]\nwidth = 120\nheight = 90\n"
+                           "[flight]\nkind = \"line\"\nframes = 5\nwarmup_frames = 0\n"
+                           "start = [100, 200, 500]\nend = [400, 300, 450]\npitch = -15\n"
+                           "[measure]\nevery = 2\nshots = [0]\n[run]\nrepetitions = 1\n";
+    const auto run = [&](const char* name, const std::function<void()>& prepare) {
+        const fs::path out = folder.path() / name;
+        const Finished finished =
+            run_lodbench({"run", file.string(), "--method", "full-grid", "--method", "lindstrom",
+                          "--method", "pgm", "--set", "pgm.grid=40", "--out", out.string()},
+                         folder.path(), prepare);
+        EXPECT_EQ(finished.status, 0) << finished.output;
+        return out;
+    };
+    const fs::path first = run("first", {}), second = run("second", {}),
+                   alone = run("alone", stay_on_one_processor);
+    const std::vector<Json::Value> cells = cells_of(first);
+    ASSERT_EQ(cells.size(), 3U);
+    for (const fs::path& out : {second, alone}) {
+        const std::vector<Json::Value> others = cells_of(out);
+        ASSERT_EQ(others.size(), cells.size());
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const Json::Value &a = cells[i], &b = others[i];
+            SCOPED_TRACE(a["cell"].asString() + " in " + out.filename().string());
+            ASSERT_EQ(a["cell"], b["cell"]);
+            EXPECT_EQ(a["depth_hash"], b["depth_hash"]);
+            EXPECT_EQ(a["truth_frames"].asInt(), 3);
+            for (const char* field : kLockstepFields) {
+                EXPECT_EQ(report::to_text(a[field]), report::to_text(b[field])) << field;
+            }
+            const std::string csv = a["cell"].asString() + ".csv";
+            const auto rows = read_frames_csv(first / "frames" / csv);
+            const auto other_rows = read_frames_csv(out / "frames" / csv);
+            ASSERT_EQ(rows.size(), 5U);
+            ASSERT_EQ(other_rows.size(), 5U);
+            for (std::size_t frame = 0; frame < rows.size(); ++frame) {
+                for (const char* column : kTruthColumns) {
+                    EXPECT_EQ(rows[frame].at(column), other_rows[frame].at(column))
+                        << column << ", frame " << frame;
+                }
+                for (const char* column : kCountColumns) {
+                    EXPECT_EQ(rows[frame].at(column), other_rows[frame].at(column))
+                        << column << ", frame " << frame;
+                }
+            }
+            if (a["method"].asString() == "full-grid") continue;
+            EXPECT_GT(a["screen_error_px"]["rms"].asDouble(), 0.01) << "too good to judge by";
+            EXPECT_GT(a["popping_px"]["max"].asDouble(), 0.01) << "too good to judge by";
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lodbench::test
