@@ -139,8 +139,11 @@ def edges_of(faces):
     """Directed edges of the faces, then for each undirected one (low, high): uses forth and back."""
     directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     low, high = directed.min(axis=1), directed.max(axis=1)
-    unique, inverse = np.unique(np.stack([low, high], axis=1), axis=0, return_inverse=True)
+    # One number an edge: np.unique of pairs takes many times as long.
+    count = int(faces.max()) + 1 if len(faces) else 1
+    keys, inverse = np.unique(low * count + high, return_inverse=True)
     inverse = inverse.reshape(-1)
+    unique = np.stack([keys // count, keys % count], axis=1)
     forth = np.bincount(inverse, directed[:, 0] == low, len(unique)).astype(np.int64)
     return unique, forth, np.bincount(inverse, minlength=len(unique)) - forth
 

@@ -52,6 +52,7 @@ terrain::FloatRaster raster_of(const common::LebGrid& grid, const TerrainInfo& i
 }
 
 void run(const Options& options, const CLI::App& command) {
+    terrain::require_exr_name(options.output);  // before all the work
     const terrain::LoadedTerrain loaded = load(options, command);
     const TerrainInfo& info = loaded.field->info();
     common::LebGrid grid(*loaded.field);
@@ -110,7 +111,8 @@ void add_terrain_errors(CLI::App& parent) {
         ->capture_default_str();
     command
         .add_option("--error", options->error,
-                    "midpoint: the largest of vertex and descendants; accumulated: their sum")
+                    "midpoint: the largest of vertex and descendants; accumulated: the largest sum "
+                    "along a path of descendants")
         ->check(CLI::IsMember({"midpoint", "accumulated"}))
         ->capture_default_str();
     add_shape(command, *options);

@@ -57,6 +57,7 @@ public:
         device_ = &device;
         scene_.upload(device);
         std::vector<PatchPlace> places;
+        places.reserve(scene_.hierarchy().size());
         for (std::uint32_t i = 0; i < scene_.hierarchy().size(); ++i) {
             places.push_back(scene_.place(i));
         }

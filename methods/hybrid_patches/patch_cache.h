@@ -3,7 +3,8 @@
 //
 // At most one triangulation of a patch is kept: the last one. Eviction, where a new one finds no
 // room: the patch that has not been selected for the longest time goes first; one that is selected
-// in this frame never goes.
+// in this frame never goes. What is freed need not lie together: after kMostFreed times the room
+// that is asked for the new one is given up, so that it never empties the cache.
 
 #include <cstdint>
 #include <list>
@@ -25,6 +26,8 @@ public:
         std::uint64_t last_selected = 0;
         std::list<std::uint32_t>::iterator place{};  ///< in order_
     };
+
+    static constexpr std::size_t kMostFreed = 4;
 
     PatchCache(std::size_t patches, std::size_t bytes) : entries_(patches), pool_(bytes) {}
 
@@ -51,7 +54,10 @@ public:
                                       std::uint32_t index_count, std::uint32_t triangles) {
         const std::size_t bytes = std::size_t(index_count) * sizeof(std::uint16_t);
         std::optional<BlockPool::Block> block = pool_.allocate(bytes);
-        while (!block && !order_.empty() && entries_[order_.front()]->last_selected != frame_) {
+        std::size_t freed = 0;
+        while (!block && freed < kMostFreed * bytes && !order_.empty() &&
+               entries_[order_.front()]->last_selected != frame_) {
+            freed += entries_[order_.front()]->block.bytes();
             drop(order_.front());
             ++evicted_;
             block = pool_.allocate(bytes);

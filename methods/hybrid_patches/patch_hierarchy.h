@@ -22,9 +22,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <glm/vec2.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "api/error.h"
 #include "common/leb_criterion.h"
 #include "common/leb_grid.h"
 
@@ -64,16 +66,33 @@ public:
     /// and `columns` are the terrain's, without padding.
     PatchHierarchy(const LebGrid& grid, int segments, int rows, int columns)
         : grid_(grid), segments_(segments), rows_(rows), columns_(columns) {
-        int doublings = 0;  // the grid has 2^doublings + 1 samples a side
-        while ((1 << doublings) < grid.size() - 1) ++doublings;
-        int halvings = 0;
-        while ((1 << halvings) < segments) ++halvings;
-        const int full_depth = 2 * doublings - 1;  // of the triangles of full resolution
-        deepest_ = std::max(0, full_depth - 2 * halvings);
-        levels_ = std::min(2 * halvings, full_depth);
+        const int full_depth = full_depth_of(grid.size());
+        const int levels = levels_of(segments);
+        deepest_ = std::max(0, full_depth - levels);
+        levels_ = std::min(levels, full_depth);
         make_triangles();
         find_height_ranges();
         find_errors();
+    }
+
+    /// Patches beyond this many would take more memory than the terrain does: at 160 bytes each,
+    /// hybrid-patches' share, 2.5 GiB.
+    static constexpr std::uint64_t kMostPatches = std::uint64_t(1) << 24;
+
+    /// Of a terrain of this size, which may be larger than a grid can be.
+    [[nodiscard]] static std::uint64_t count_of(const TerrainInfo& info, int segments) {
+        const int deepest =
+            std::max(0, full_depth_of(std::max(info.rows, info.columns)) - levels_of(segments));
+        return 4 * ((std::uint64_t(2) << deepest) - 1);
+    }
+    /// Throws InputError for more than kMostPatches.
+    static void require_few(const TerrainInfo& info, int segments) {
+        const std::uint64_t count = count_of(info, segments);
+        if (count <= kMostPatches) return;
+        throw InputError("terrain '" + info.name + "' has " + std::to_string(count) +
+                         " patches of " + std::to_string(segments + 1) +
+                         " samples an edge, at most " + std::to_string(kMostPatches) +
+                         " are taken: use a larger patch_samples");
     }
 
     [[nodiscard]] const Patch& patch(std::uint32_t number) const { return patches_[number]; }
@@ -122,6 +141,18 @@ private:
         glm::dvec3 low, high;  ///< relative to the eye
     };
 
+    /// Depth of the triangles of full resolution; a side has 2^n + 1 samples, or is padded to that.
+    [[nodiscard]] static int full_depth_of(int samples_a_side) {
+        int doublings = 1;
+        while ((std::int64_t(1) << doublings) < samples_a_side - 1) ++doublings;
+        return 2 * doublings - 1;
+    }
+    /// Bisections that make `segments` segments on each edge.
+    [[nodiscard]] static int levels_of(int segments) {
+        int halvings = 0;
+        while ((1 << halvings) < segments) ++halvings;
+        return 2 * halvings;
+    }
     [[nodiscard]] static constexpr std::uint32_t first_of(int depth) {
         return 4 * ((std::uint32_t(1) << depth) - 1);
     }

@@ -23,6 +23,7 @@ PatchScene::PatchScene(const Params& params, std::string label)
 void PatchScene::prepare(const Terrain& terrain) {
     rows_ = terrain.info().rows;
     columns_ = terrain.info().columns;
+    PatchHierarchy::require_few(terrain.info(), segments_);
     grid_.emplace(terrain);
     common::compute_errors_by_level(*grid_, options_.error);
     hierarchy_.emplace(*grid_, segments_, rows_, columns_);

@@ -6,10 +6,10 @@ namespace lodbench::hybrid_patches {
 namespace {
 
 constexpr ParamSpec kTau = real_param("tau", 1, 0.01, 1000, "screen-space error tolerance, pixels");
-constexpr ParamSpec kError = choice_param(
-    "error", "midpoint", "midpoint|accumulated",
-    "object-space error: the paper's maximum of midpoint errors, or their sum down the hierarchy, "
-    "which bounds the surface");
+constexpr ParamSpec kError = choice_param("error", "midpoint", "midpoint|accumulated",
+                                          "object-space error: the paper's maximum of midpoint "
+                                          "errors, or the largest sum along a path of "
+                                          "descendants, which bounds the surface");
 constexpr ParamSpec kMetric =
     choice_param("metric", "euclidean", "euclidean|planar",
                  "distance: the paper's to the eye, or the depth with the image corner's secant, "

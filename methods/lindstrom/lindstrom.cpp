@@ -118,8 +118,8 @@ constexpr ParamSpec kParams[] = {
     real_param("tau", 1, 0.01, 1000, "screen-space error tolerance, pixels"),
     choice_param(
         "error", "midpoint", "midpoint|accumulated",
-        "object-space error: the paper's maximum of midpoint errors, or their sum down the "
-        "hierarchy, which bounds the surface"),
+        "object-space error: the paper's maximum of midpoint errors, or the largest sum along a "
+        "path of descendants, which bounds the surface"),
     choice_param(
         "metric", "euclidean", "euclidean|planar",
         "distance: the paper's to the eye, or the depth with the image corner's secant, which "

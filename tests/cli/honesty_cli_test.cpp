@@ -13,13 +13,11 @@
 namespace lodbench::test {
 namespace {
 
-TEST(BoundHonesty, only_accumulated_errors_in_the_image_plane_keep_the_bound) {
-    const ScratchFolder folder;
-    std::vector<std::string> arguments = {"run"};
-    for (const int fov : {30, 120}) {
-        const std::string name = "fov" + std::to_string(fov);
-        const auto file = folder.path() / (name + ".toml");
-        std::ofstream(file) << fmt::format(R"(name = "{}"
+/// Up to Mount Rainier, three frames measured, with another field of view.
+fs::path flight(const fs::path& folder, int fov) {
+    const std::string name = "fov" + std::to_string(fov);
+    const fs::path file = folder / (name + ".toml");
+    std::ofstream(file) << fmt::format(R"(name = "{}"
 [terrain]
 file = "{}/scenarios/terrain/puget_sound_1025_160m.png"
 spacing = 160
@@ -43,9 +41,14 @@ shots = [0]
 [run]
 repetitions = 1
 )",
-                                           name, LODBENCH_SOURCE_DIR, fov);
-        arguments.push_back(file.string());
-    }
+                                       name, LODBENCH_SOURCE_DIR, fov);
+    return file;
+}
+
+TEST(BoundHonesty, only_accumulated_errors_in_the_image_plane_keep_the_bound) {
+    const ScratchFolder folder;
+    std::vector<std::string> arguments = {"run"};
+    for (const int fov : {30, 120}) arguments.push_back(flight(folder.path(), fov).string());
     const auto out = folder.path() / "out";
     for (const char* word : {"--method", "lindstrom", "--set", "lindstrom.tau=0.25,1,16", "--set",
                              "lindstrom.error=midpoint,accumulated", "--set",
@@ -83,6 +86,39 @@ repetitions = 1
     EXPECT_LT((worst[{"fov30", "midpoint", "planar"}]), 2.5);
     EXPECT_GT((worst[{"fov120", "accumulated", "euclidean"}]), 1.5);
     EXPECT_LT((worst[{"fov120", "accumulated", "euclidean"}]), 9.4);
+}
+
+TEST(BoundHonesty, patches_keep_the_bound_as_vertices_do_and_have_no_cracks) {
+    const ScratchFolder folder;
+    std::vector<std::string> arguments = {"run"};
+    for (const int fov : {30, 120}) arguments.push_back(flight(folder.path(), fov).string());
+    const auto out = folder.path() / "out";
+    for (const char* word : {"--method", "hybrid-patches",
+                             "--method", "static-patches",
+                             "--set",    "hybrid-patches.tau=0.25,1,16",
+                             "--set",    "hybrid-patches.error=accumulated",
+                             "--set",    "hybrid-patches.metric=planar",
+                             "--set",    "hybrid-patches.patch_samples=17",
+                             "--set",    "static-patches.tau=1,16",
+                             "--set",    "static-patches.error=accumulated",
+                             "--set",    "static-patches.metric=planar",
+                             "--set",    "static-patches.patch_samples=17",
+                             "--out"}) {
+        arguments.emplace_back(word);
+    }
+    arguments.push_back(out.string());
+    const Finished run = run_lodbench(arguments, folder.path());
+    ASSERT_EQ(run.status, 0) << run.output;
+    int cells = 0;
+    for (const Json::Value& cell : cells_of(out)) {
+        const std::string name = cell["cell"].asString();
+        EXPECT_LE(report::read_number_or_inf(cell["bound_honesty"]).value(), 1 + 1e-3) << name;
+        EXPECT_GT(cell["screen_error_px"]["max"].asDouble(), 0) << name;
+        EXPECT_EQ(cell["crack_pixels"]["total"].asUInt64(), 0U) << name;
+        EXPECT_EQ(cell["uncovered_samples"].asUInt64(), 0U) << name;
+        ++cells;
+    }
+    EXPECT_EQ(cells, 10);
 }
 
 }  // namespace

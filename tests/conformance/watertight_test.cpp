@@ -1,103 +1,99 @@
 // Methods of longest-edge bisection leave no crack: judged on the exported mesh by a program that
-// shares no code with it.
+// shares no code with it. A choice of grounds and tolerances; all of them:
+// watertight_slow_test.cpp.
 
-#include <fmt/format.h>
+#include <vector>
 
-#include <algorithm>
-#include <tuple>
-
-#include "mesh_tools.h"
+#include "watertight.h"
 
 namespace lodbench::test {
 namespace {
 
-struct Ground {
-    const char* name;
-    const char* terrain;  ///< TOML
-    const char* from;     ///< keyframes
-    const char* to;
+struct Case {
+    const char* method;
+    int patch_samples;  ///< 0: the method has none
+    std::vector<const char*> grounds;
+    std::vector<double> tolerances;  ///< pixels
+    const char* settings = "";
 };
-void PrintTo(const Ground& ground, std::ostream* stream) {
-    *stream << ground.name;
+struct Cell {
+    std::string method;
+    int patch_samples;
+    Ground ground;
+    double tau = 0;  ///< pixels; unused for the base mesh
+    std::string more;
+
+    [[nodiscard]] std::string settings() const {
+        return patch_samples == 0 ? more
+                                  : fmt::format("--set patch_samples={} {}", patch_samples, more);
+    }
+};
+void PrintTo(const Cell& cell, std::ostream* stream) {
+    *stream << cell.method << ' ' << cell.ground.name << ' ' << cell.settings();
 }
 
-constexpr const char* kFromSmall = "[100, -50, 700]";
-constexpr const char* kToSmall = "[350, 300, 400]";
-
-constexpr Ground kGrounds[] = {
-    {"puget",
-     "file = \"" LODBENCH_SOURCE_DIR "/scenarios/terrain/puget_sound_1025_160m.png\"\n"
-     "spacing = 160\nvertical_scale = 0.1",
-     "[87000, 84000, 1300]", "[116500, 78000, 3200]"},
-    {"plane", "synthetic = \"plane\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
-    {"ramp", "synthetic = \"ramp\"\nrows = 65\ncolumns = 65\nspacing = 10", kFromSmall, kToSmall},
-    {"sphere_cap", "synthetic = \"sphere-cap\"\nrows = 50\ncolumns = 77\nspacing = [8, 10]",
-     kFromSmall, kToSmall},
-    {"bump", "synthetic = \"bump\"\nrows = 77\ncolumns = 40\nspacing = [10, 7]", kFromSmall,
-     kToSmall},
-    {"step", "synthetic = \"step\"\nrows = 67\ncolumns = 66\nspacing = 10", kFromSmall, kToSmall},
-    {"ridged", "synthetic = \"ridged\"\nrows = 257\ncolumns = 257\nspacing = 10", kFromSmall,
-     kToSmall},
-    {"ridged_odd", "synthetic = \"ridged\"\nrows = 100\ncolumns = 37\nspacing = 10", kFromSmall,
-     kToSmall},
-    {"ridged_oblong", "synthetic = \"ridged\"\nrows = 130\ncolumns = 258\nspacing = [10, 15]",
-     kFromSmall, kToSmall},
-    {"ridged_2x2", "synthetic = \"ridged\"\nrows = 2\ncolumns = 2\nspacing = 100", kFromSmall,
-     kToSmall},
-    {"ridged_3x5", "synthetic = \"ridged\"\nrows = 3\ncolumns = 5\nspacing = 100", kFromSmall,
-     kToSmall},
-};
-
-class Watertight : public MeshTest,
-                   public testing::WithParamInterface<std::tuple<const char*, Ground>> {
-protected:
-    void SetUp() override {
-        MeshTest::SetUp();
-        if (!has_numpy()) GTEST_SKIP() << "no numpy";
-        scenario_ = scenario(ground().terrain, ground().from, ground().to);
-    }
-    static std::string method() { return std::get<0>(GetParam()); }
-    static const Ground& ground() { return std::get<1>(GetParam()); }
-    std::string scenario_;
-};
-
-TEST_P(Watertight, at_every_tolerance_and_frame) {
-    for (const double tau : {0.25, 1.0, 4.0, 16.0}) {
-        for (const int frame : {0, 1, 2}) {
-            const Outcome made = lodbench(
-                fmt::format("mesh {} --before-clipping --set culling=false --set tau={} --frame {} "
-                            "--scenario {} -o {}",
-                            method(), tau, frame, scenario_, file("m.ply")));
-            ASSERT_EQ(made.status, 0) << made.output;
-            const Outcome checked = check_mesh(file("m.ply") + " --watertight --covers-terrain");
-            EXPECT_EQ(checked.status, 0)
-                << "tau " << tau << ", frame " << frame << ": " << checked.output;
+std::vector<Cell> cells_of(const std::vector<Case>& cases) {
+    std::vector<Cell> cells;
+    for (const Case& one : cases) {
+        for (const char* ground : one.grounds) {
+            for (const double tau : one.tolerances) {
+                cells.push_back(
+                    {one.method, one.patch_samples, ground_named(ground), tau, one.settings});
+            }
         }
     }
+    return cells;
 }
 
-TEST_P(Watertight, base_mesh_far_away_at_a_huge_tolerance) {
-    const std::string far = scenario(ground().terrain, "[0, 0, 9e7]", "[0, 0, 1e8]", -90);
-    const Outcome made = lodbench(
-        "mesh " + method() + " --before-clipping --set culling=false --set tau=1000 --scenario " +
-        far + " -o " + file("m.ply"));
-    ASSERT_EQ(made.status, 0) << made.output;
-    // Four patches of 64 x 64 triangles where these are drawn whole.
-    const char* most = method() == "static-patches" ? "16384" : "4";
-    const Outcome checked = check_mesh(file("m.ply") + " --max-triangles " + most);
-    EXPECT_EQ(checked.status, 0) << checked.output;
+std::string name_of(const testing::TestParamInfo<Cell>& chosen) {
+    const Cell& cell = chosen.param;
+    return test_name(fmt::format("{} {} {} tau {}{}", cell.method, cell.patch_samples,
+                                 cell.ground.name, cell.tau,
+                                 cell.more.empty() ? "" : " accumulated planar"));
 }
 
-INSTANTIATE_TEST_SUITE_P(methods, Watertight,
-                         testing::Combine(testing::Values("lindstrom", "hybrid-patches",
-                                                          "static-patches"),
-                                          testing::ValuesIn(kGrounds)),
-                         [](const auto& chosen) {
-                             std::string name = std::string(std::get<0>(chosen.param)) + "_" +
-                                                std::get<1>(chosen.param).name;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+class Watertight : public WatertightTest, public testing::WithParamInterface<Cell> {};
+
+TEST_P(Watertight, mesh) {
+    const Cell& cell = GetParam();
+    expect_watertight(cell.method, cell.settings(), cell.ground, cell.tau, 2);
+}
+
+const std::vector<const char*> kMost = {"plane",      "bump",       "step",  "ridged_odd",
+                                        "ridged_2x2", "ridged_3x5", "ridged"};
+
+INSTANTIATE_TEST_SUITE_P(
+    chosen, Watertight,
+    testing::ValuesIn(cells_of({
+        {"lindstrom", 0, kMost, {1, 16}},
+        {"hybrid-patches", 9, kMost, {1, 16}},
+        {"static-patches", 9, {"bump", "step", "ridged_odd", "ridged_2x2", "ridged"}, {4}},
+        {"hybrid-patches", 65, {"ridged_oblong"}, {4}},
+        {"static-patches", 65, {"ridged_oblong"}, {4}},
+        {"hybrid-patches", 65, {"ridged"}, {4}, "--set error=accumulated --set metric=planar"},
+        {"lindstrom", 0, {"puget"}, {16}},
+        {"hybrid-patches", 65, {"puget"}, {16}},
+    })),
+    name_of);
+
+class BaseMesh : public WatertightTest, public testing::WithParamInterface<Cell> {};
+
+TEST_P(BaseMesh, far_away_at_a_huge_tolerance) {
+    const Cell& cell = GetParam();
+    expect_base_mesh(cell.method, cell.settings(), cell.ground, cell.patch_samples);
+}
+
+const std::vector<const char*> kFew = {"ridged_2x2", "step", "ridged_oblong"};
+
+INSTANTIATE_TEST_SUITE_P(chosen, BaseMesh,
+                         testing::ValuesIn(cells_of({
+                             {"lindstrom", 0, kFew, {1000}},
+                             {"hybrid-patches", 65, kFew, {1000}},
+                             {"static-patches", 65, kFew, {1000}},
+                             {"hybrid-patches", 9, {"step"}, {1000}},
+                             {"static-patches", 9, {"step"}, {1000}},
+                         })),
+                         name_of);
 
 class FullSurface : public MeshTest {};
 
