@@ -76,6 +76,15 @@ double meeting(const glm::vec3* corners, const glm::dvec3& origin, const glm::dv
     return glm::dot(point, direction) / glm::dot(direction, direction);
 }
 
+/// From the end of `axis` to the segment ab.
+double distance_to_segment(const glm::dvec3& axis, const glm::dvec3& a, const glm::dvec3& b) {
+    const glm::dvec3 along = b - a;
+    const double length = glm::dot(along, along);
+    const double share =
+        length > 0 ? std::clamp(glm::dot(axis - a, along) / length, 0.0, 1.0) : 0.0;
+    return glm::distance(axis, a + share * along);
+}
+
 void append(std::vector<glm::vec3>& vertices, const glm::vec3* corners) {
     vertices.insert(vertices.end(), corners, corners + 3);
 }
@@ -265,6 +274,53 @@ std::optional<double> DrawnSurface::meets_surface(const glm::dvec3& origin,
                                                   const glm::dvec3& direction, double from,
                                                   double to) const {
     return least_meeting(surface_, low_, high_, origin, direction, from, to);
+}
+
+bool DrawnSurface::sliver_near(const glm::dvec3& origin, const glm::dvec3& direction, double from,
+                               double to, double radius, double thickness) const {
+    const glm::dvec3 start = origin - origin_;
+    const glm::dvec3 axis = glm::normalize(direction);
+    // In plan: the boxes that come within the radius of the segment, by their slabs.
+    const glm::dvec2 a = glm::dvec2(start + from * direction);
+    const glm::dvec2 b = glm::dvec2(start + to * direction);
+    const double margin = radius * to * glm::length(direction);
+    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
+        if (node.min_x[i] > node.max_x[i]) return false;  // no child
+        double enter = 0;
+        double leave = 1;
+        for (int axis_index = 0; axis_index < 2; ++axis_index) {
+            const double low = (axis_index == 0 ? node.min_x[i] : node.min_y[i]) - margin;
+            const double high = (axis_index == 0 ? node.max_x[i] : node.max_y[i]) + margin;
+            const double along = b[axis_index] - a[axis_index];
+            if (along == 0) {
+                if (a[axis_index] < low || a[axis_index] > high) return false;
+                continue;
+            }
+            const double one = (low - a[axis_index]) / along;
+            const double other = (high - a[axis_index]) / along;
+            enter = std::max(enter, std::min(one, other));
+            leave = std::min(leave, std::max(one, other));
+        }
+        return enter <= leave;
+    };
+    return surface_.any(enters, [&](const glm::vec3* corners) {
+        // Projected to the plane at distance 1 along the ray.
+        std::array<glm::dvec3, 3> seen;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec3 corner = glm::dvec3(corners[i]) - start;
+            const double distance = glm::dot(corner, axis);
+            if (!(distance > 0)) return false;
+            seen[i] = corner / distance;
+        }
+        double longest = 0;
+        double nearest = kInfinity;
+        for (std::size_t i = 0; i < 3; ++i) {
+            longest = std::max(longest, glm::distance(seen[i], seen[(i + 1) % 3]));
+            nearest = std::min(nearest, distance_to_segment(axis, seen[i], seen[(i + 1) % 3]));
+        }
+        const double area = glm::length(glm::cross(seen[1] - seen[0], seen[2] - seen[0]));
+        return nearest <= radius && area < thickness * longest;
+    });
 }
 
 std::optional<double> DrawnSurface::least_meeting(const TriangleTree& tree, const glm::dvec2& low,

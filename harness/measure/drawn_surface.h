@@ -87,6 +87,11 @@ public:
                                                       const glm::dvec3& direction, double from,
                                                       double to) const;
 
+    /// Whether a triangle of l_f that is seen thinner than the tangent `thickness` passes within
+    /// the tangent `radius` of the ray's part [from, to], seen from its origin.
+    [[nodiscard]] bool sliver_near(const glm::dvec3& origin, const glm::dvec3& direction,
+                                   double from, double to, double radius, double thickness) const;
+
     /// Triangles that touch the extent, by what became of them.
     [[nodiscard]] std::uint64_t triangle_count() const {  ///< of l_f, slivers included
         return surface_.triangle_count() + slivers_.triangle_count();

@@ -134,19 +134,19 @@ private:
     [[nodiscard]] std::optional<glm::dvec3> point_on_surface(std::size_t x, std::size_t y,
                                                              double depth) const {
         std::optional<glm::dvec3> nearest;
-        double off = kSliverSlack * depth;
-        double least = kInfinity;
-        double greatest = -kInfinity;
+        double off = kInfinity;
         for (const glm::dvec2& shift : kShifts) {
-            const auto met = meets_surface(x, y, shift, depth, 2 * kSliverSlack);
-            if (!met) continue;
-            least = std::min(least, *met);
-            greatest = std::max(greatest, *met);
-            if (std::abs(*met - depth) > off) continue;
+            const auto met = meets_surface(x, y, shift, depth, kSliverSlack);
+            if (!met || std::abs(*met - depth) >= off) continue;
             off = std::abs(*met - depth);
             nearest = pixels_.eye() + ray(x, y, shift) * *met;
         }
-        if (off > kDepthSlack * depth && greatest - least < kEdgeOn * depth) return std::nullopt;
+        if (nearest && off > kDepthSlack * depth &&
+            !surface_.sliver_near(pixels_.eye(), ray(x, y), depth * (1 - kSliverSlack),
+                                  depth * (1 + kSliverSlack), pixels_.tangent(kSlackPx),
+                                  pixels_.tangent(kSlackPx))) {
+            return std::nullopt;
+        }
         return nearest;
     }
 

@@ -59,6 +59,9 @@ public:
         return forward_ + right_ * ((x - centre_.x) / lambda_) + up_ * ((centre_.y - y) / lambda_);
     }
 
+    /// Pixels at the image's centre as a tangent.
+    [[nodiscard]] double tangent(double px) const { return px / lambda_; }
+
     [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
     [[nodiscard]] double near_plane() const { return near_; }
 

@@ -15,7 +15,8 @@ constexpr std::array kFields = {"truth_frames",   "screen_error_px",         "vi
                                 "pixel_error_px", "pixel_error_realtime_px", "crack_pixels",
                                 "skirt_pixels",   "uncovered_samples",       "silhouette_px",
                                 "popping_px",     "height_rmse_m",           "image",
-                                "bound_honesty",  "clipped_segments",        "unjudged_pixels"};
+                                "bound_honesty",  "clipped_segments",        "unjudged_pixels",
+                                "wall_triangles"};
 
 Json::Value count(std::uint64_t value) {
     return Json::UInt64(value);

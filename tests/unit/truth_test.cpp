@@ -159,24 +159,38 @@ TEST(TruthMeter, a_column_of_sky_is_a_crack_and_moves_its_own_silhouette_alone) 
     EXPECT_DOUBLE_EQ(summary.silhouette_mean, offset / kWidth / 2) << "two frames";
 }
 
-TEST(TruthMeter, a_depth_is_looked_for_on_the_surface_as_far_as_a_slivers_goes_wrong) {
+TEST(TruthMeter, a_depth_off_the_surface_is_looked_for_on_it_at_slivers_only) {
     const Ground ground = flat_ground();
     const Camera camera = from_west();
     const double t = 20 * camera.lambda() / 3.5;  // of row 27, whose middle is 3.5 below the centre
-    const auto greatest = [&](double too_deep) {
+    const glm::dvec3 direction = camera.forward() +
+                                 camera.right() * (40.5 - kWidth / 2.0) / camera.lambda() +
+                                 camera.up() * (kHeight / 2.0 - 27.5) / camera.lambda();
+    // On the ground along the pixel's way, a hundredth of the pixel's width.
+    const auto with_sliver = [&] {
+        CapturedSurface surface = plane(camera, 0);
+        const glm::vec3 near_end(direction * t);
+        const glm::vec3 far_end(near_end.x * 1.2F, near_end.y * 1.2F, near_end.z);
+        const float width = float(0.01 * t / camera.lambda());
+        for (const glm::vec3& corner : {near_end, far_end, near_end + glm::vec3(0, width, 0)}) {
+            surface.vertices.push_back(corner);
+        }
+        return surface;
+    };
+    const auto greatest = [&](double too_deep, CapturedSurface surface) {
         TruthMeter meter(ground.heights, ground.info, std::nullopt);
         std::vector<float> depth = depth_of(camera, 0);
         depth[pixel(27, 40)] = float(camera.near_plane / (t * (1 + too_deep)));
-        meter.take(0, camera, plane(camera, 0), nullptr);
+        meter.take(0, camera, std::move(surface), nullptr);
         return *meter.measure(depth, picture(100), picture(100)).pixel_max_px;
     };
     const auto offset = [&](double too_deep) {
         return camera.lambda() * 20 * too_deep / (t * (1 + too_deep));
     };
-    ASSERT_GT(offset(0.9 * kSliverSlack), kSettledPx);  // else it would be taken as it is
-    EXPECT_LE(greatest(0.9 * kSliverSlack), kFloat);
-    // Farther off than the rays kSlackPx above and below meet the ground, too: by one in 3.5 * 16.
-    EXPECT_NEAR(greatest(4 * kSliverSlack), offset(4 * kSliverSlack), 1e-4);
+    ASSERT_GT(offset(0.15), kSettledPx);  // else it would be taken as it is
+    EXPECT_NEAR(greatest(0.15, plane(camera, 0)), offset(0.15), 1e-4);
+    EXPECT_LE(greatest(0.15, with_sliver()), kFloat);
+    EXPECT_NEAR(greatest(1.5 * kSliverSlack, with_sliver()), offset(1.5 * kSliverSlack), 1e-4);
 }
 
 TEST(TruthMeter, the_worst_pixel_is_named_by_its_row_and_column) {
