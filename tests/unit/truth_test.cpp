@@ -166,12 +166,12 @@ TEST(TruthMeter, a_depth_off_the_surface_is_looked_for_on_it_at_slivers_only) {
     const glm::dvec3 direction = camera.forward() +
                                  camera.right() * (40.5 - kWidth / 2.0) / camera.lambda() +
                                  camera.up() * (kHeight / 2.0 - 27.5) / camera.lambda();
-    // On the ground along the pixel's way, a hundredth of the pixel's width.
-    const auto with_sliver = [&] {
+    // On the ground along the pixel's way, from its middle on.
+    const auto with_triangle = [&](double width_px) {
         CapturedSurface surface = plane(camera, 0);
         const glm::vec3 near_end(direction * t);
         const glm::vec3 far_end(near_end.x * 1.2F, near_end.y * 1.2F, near_end.z);
-        const float width = float(0.01 * t / camera.lambda());
+        const float width = float(width_px * t / camera.lambda());
         for (const glm::vec3& corner : {near_end, far_end, near_end + glm::vec3(0, width, 0)}) {
             surface.vertices.push_back(corner);
         }
@@ -189,8 +189,10 @@ TEST(TruthMeter, a_depth_off_the_surface_is_looked_for_on_it_at_slivers_only) {
     };
     ASSERT_GT(offset(0.15), kSettledPx);  // else it would be taken as it is
     EXPECT_NEAR(greatest(0.15, plane(camera, 0)), offset(0.15), 1e-4);
-    EXPECT_LE(greatest(0.15, with_sliver()), kFloat);
-    EXPECT_NEAR(greatest(1.5 * kSliverSlack, with_sliver()), offset(1.5 * kSliverSlack), 1e-4);
+    EXPECT_LE(greatest(0.15, with_triangle(0.01)), kFloat);
+    EXPECT_NEAR(greatest(0.15, with_triangle(5)), offset(0.15), 1e-4) << "its edge, but no sliver";
+    EXPECT_NEAR(greatest(1.5 * kSliverSlack, with_triangle(0.01)), offset(1.5 * kSliverSlack),
+                1e-4);
 }
 
 TEST(TruthMeter, the_worst_pixel_is_named_by_its_row_and_column) {
