@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "cli/frames_csv.h"
 #include "cli/run_lodbench.h"
 
 namespace lodbench::test {
@@ -19,18 +20,6 @@ using Arguments = std::vector<std::string>;
 
 /// One row of frames/<cell>.csv by column; an empty field is absent.
 using FrameRow = std::map<std::string, double>;
-
-std::vector<std::string> split(const std::string& line) {
-    std::vector<std::string> fields(1);
-    for (const char c : line) {
-        if (c == ',') {
-            fields.emplace_back();
-        } else {
-            fields.back() += c;
-        }
-    }
-    return fields;
-}
 
 class Run : public testing::Test {
 protected:
@@ -67,17 +56,11 @@ protected:
     }
 
     static std::vector<FrameRow> frames_of(const fs::path& out, const std::string& cell) {
-        std::ifstream stream(out / "frames" / (cell + ".csv"));
-        std::string line;
-        std::getline(stream, line);
-        const std::vector<std::string> names = split(line);
         std::vector<FrameRow> rows;
-        while (std::getline(stream, line)) {
-            const std::vector<std::string> fields = split(line);
-            EXPECT_EQ(fields.size(), names.size()) << line;
+        for (const FrameTexts& texts : read_frames_csv(out / "frames" / (cell + ".csv"))) {
             FrameRow& row = rows.emplace_back();
-            for (std::size_t i = 0; i < std::min(fields.size(), names.size()); ++i) {
-                if (!fields[i].empty()) row[names[i]] = std::stod(fields[i]);
+            for (const auto& [column, text] : texts) {
+                if (!text.empty()) row[column] = std::stod(text);
             }
         }
         return rows;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "cli/frames_csv.h"
 #include "mesh_tools.h"
 #include "run_lodbench.h"
 
@@ -30,37 +31,8 @@ double figure(const Json::Value& figures, const char* name) {
     return value.isNumeric() ? value.asDouble() : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// A frame's row in a cell's CSV: column to text.
-using Row = std::map<std::string, std::string>;
-
-std::vector<Row> read_csv(const fs::path& path) {
-    const auto split = [](const std::string& line) {
-        std::vector<std::string> parts(1);
-        for (const char c : line) {
-            if (c == ',') {
-                parts.emplace_back();
-            } else {
-                parts.back() += c;
-            }
-        }
-        return parts;
-    };
-    std::ifstream stream(path);
-    std::string line;
-    std::getline(stream, line);
-    const std::vector<std::string> names = split(line);
-    std::vector<Row> rows;
-    while (std::getline(stream, line)) {
-        const std::vector<std::string> values = split(line);
-        if (values.size() != names.size()) return {};
-        Row& row = rows.emplace_back();
-        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = values[i];
-    }
-    return rows;
-}
-
 /// NaN where there is none.
-double number_in(const Row& row, const char* column) {
+double number_in(const FrameTexts& row, const char* column) {
     const auto found = row.find(column);
     if (found == row.end() || found->second.empty()) return NAN;
     return std::stod(found->second);
@@ -173,15 +145,15 @@ TEST_P(Truth, screen_error_is_what_an_independent_program_finds_on_the_exported_
     ASSERT_EQ(cells.size(), GetParam().methods.size());
     for (const Json::Value& cell : cells) {
         const std::string method = cell["method"].asString();
-        const std::vector<Row> rows =
-            read_csv(folder_ / "out" / "frames" / (cell["cell"].asString() + ".csv"));
+        const std::vector<FrameTexts> rows =
+            read_frames_csv(folder_ / "out" / "frames" / (cell["cell"].asString() + ".csv"));
         ASSERT_EQ(rows.size(), std::size_t(kFrames)) << method;
         double count = 0;
         double uncovered = 0;
         double max_covered = 0;
         for (int frame = 0; frame < kFrames; ++frame) {
             SCOPED_TRACE(fmt::format("{}, frame {}", method, frame));
-            const Row& row = rows[std::size_t(frame)];
+            const FrameTexts& row = rows[std::size_t(frame)];
             ASSERT_EQ(number_in(row, "frame"), frame);
             const Outcome made = lodbench(fmt::format("mesh {} --frame {} --scenario {} -o {}",
                                                       method, frame, flight, file("m.ply")));
