@@ -24,6 +24,50 @@ void Terrain::read(const SampleRect& rect, std::span<float> heights) const {
     samples_served_ += count;
 }
 
+TilePyramid::TilePyramid(int rows, int columns) : rows_(rows), columns_(columns) {
+    if (rows < 2 || columns < 2 || rows > 1 << 30 || columns > 1 << 30) {
+        throw ContractError(
+            fmt::format("TilePyramid: {} rows x {} columns, expected 2 to 2^30", rows, columns));
+    }
+    while (this->rows(levels_ - 1) > 1 || this->columns(levels_ - 1) > 1) ++levels_;
+    for (int level = 0; level < levels_; ++level) {
+        first_[std::size_t(level) + 1] =
+            first_[std::size_t(level)] +
+            std::size_t(this->rows(level)) * std::size_t(this->columns(level));
+    }
+}
+
+bool TilePyramid::contains(const TileId& tile) const {
+    return tile.level >= 0 && tile.level < levels_ && tile.row >= 0 && tile.column >= 0 &&
+           tile.row < rows(tile.level) && tile.column < columns(tile.level);
+}
+
+void Terrain::require(const TileId& tile, const char* caller) const {
+    const TilePyramid pyramid = tiles();
+    if (pyramid.contains(tile)) return;
+    throw ContractError(fmt::format(
+        "Terrain::{}: no tile (level {}, row {}, column {}) in a pyramid of {} levels "
+        "over {} rows x {} columns",
+        caller, tile.level, tile.row, tile.column, pyramid.levels(), info_.rows, info_.columns));
+}
+
+void Terrain::read_tile(const TileId& tile, std::span<float> heights) const {
+    require(tile, "read_tile");
+    if (heights.size() != kTileSampleCount) {
+        throw ContractError(
+            fmt::format("Terrain::read_tile: expected room for {} samples, found {}",
+                        kTileSampleCount, heights.size()));
+    }
+    copy_tile(tile, heights);
+    samples_served_ += kTileSampleCount;
+    ++tiles_served_;
+}
+
+TileSummary Terrain::tile_summary(const TileId& tile) const {
+    require(tile, "tile_summary");
+    return find_summary(tile);
+}
+
 const ParamValue& Params::find(std::string_view name) const {
     const auto found = values_.find(name);
     if (found == values_.end()) {

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+
+#include <tbb/parallel_for.h>
 
 #include "api/error.h"
 #include "base/hash.h"
@@ -70,6 +73,41 @@ void HeightField::copy_samples(const SampleRect& rect, std::span<float> heights)
             heights_.begin() + std::ptrdiff_t(rect.row + row) * info_.columns + rect.column;
         std::copy_n(source, rect.columns, heights.begin() + std::ptrdiff_t(row) * rect.columns);
     }
+}
+
+void HeightField::copy_tile(const TileId& tile, std::span<float> heights) const {
+    const auto sample = [&](int index, int samples) {
+        return std::size_t(std::min(std::int64_t(index) << tile.level, std::int64_t(samples) - 1));
+    };
+    float* out = heights.data();
+    for (int row = 0; row < kTileSamples; ++row) {
+        const float* const in =
+            &heights_[sample(tile.row * kTileCells + row, info_.rows) * std::size_t(info_.columns)];
+        for (int column = 0; column < kTileSamples; ++column) {
+            *out++ = in[sample(tile.column * kTileCells + column, info_.columns)];
+        }
+    }
+}
+
+TileSummary HeightField::find_summary(const TileId& tile) const {
+    std::call_once(summarised_, [this] {
+        const TilePyramid pyramid = tiles();
+        auto summaries = std::make_unique<TileSummaries>(pyramid);
+        for (int level = 0; level < pyramid.levels(); ++level) {
+            // Pairs of rows of tiles have their parents for themselves.
+            tbb::parallel_for(0, (pyramid.rows(level) + 1) / 2, [&](int pair) {
+                std::vector<float> heights(kTileSampleCount);
+                for (int row = 2 * pair; row < std::min(2 * pair + 2, pyramid.rows(level)); ++row) {
+                    for (int column = 0; column < pyramid.columns(level); ++column) {
+                        copy_tile({level, row, column}, heights);
+                        summaries->add({level, row, column}, heights);
+                    }
+                }
+            });
+        }
+        summaries_ = std::move(summaries);
+    });
+    return summaries_->at(tile);
 }
 
 }  // namespace lodbench::terrain

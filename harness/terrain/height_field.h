@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "api/terrain.h"
+#include "terrain/tile_summaries.h"
 
 namespace lodbench::terrain {
 
@@ -27,7 +29,11 @@ public:
 
 private:
     void copy_samples(const SampleRect& rect, std::span<float> heights) const override;
+    void copy_tile(const TileId& tile, std::span<float> heights) const override;
+    [[nodiscard]] TileSummary find_summary(const TileId& tile) const override;
     std::vector<float> heights_;
+    mutable std::once_flag summarised_;
+    mutable std::unique_ptr<TileSummaries> summaries_;
 };
 
 /// What names a terrain, in a scenario or on the command line: either a file or a synthetic form.
