@@ -16,6 +16,11 @@ struct EnvironmentError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// What the method needs and this device does not have: the cell is skipped, not failed.
+struct UnsupportedError : EnvironmentError {
+    using EnvironmentError::EnvironmentError;
+};
+
 /// A programmer's mistake, a plugin author's included: says what was expected.
 struct ContractError : std::logic_error {
     using std::logic_error::logic_error;

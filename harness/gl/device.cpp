@@ -78,6 +78,10 @@ Device::Device() {
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
 }
 
+Device::Device(Device& host) : Device() {
+    host_ = &host;
+}
+
 Device::~Device() {
     end_capture();
     glDebugMessageCallback(nullptr, nullptr);
@@ -130,9 +134,26 @@ std::vector<std::string> Device::take_errors() {
     return errors;
 }
 
+std::unique_ptr<SharedContext> Device::make_shared_context() {
+    if (!make_context_) {
+        throw UnsupportedError("a further context was asked for, and the host can make none");
+    }
+    return make_context_();
+}
+
 void Device::count_allocation(std::int64_t bytes) {
     allocated_bytes_ += static_cast<std::uint64_t>(bytes);
     peak_allocated_bytes_ = std::max(peak_allocated_bytes_, allocated_bytes_);
+    if (host_ == nullptr) return;
+    const auto now = static_cast<std::uint64_t>(host_->shared_.allocated += bytes);
+    std::uint64_t peak = host_->shared_.peak;
+    while (peak < now && !host_->shared_.peak.compare_exchange_weak(peak, now)) {
+    }
+}
+
+void Device::count_upload(std::uint64_t bytes) {
+    uploaded_bytes_ += bytes;
+    if (host_ != nullptr) host_->shared_.uploaded += bytes;
 }
 
 template <typename Draw>

@@ -5,6 +5,7 @@
 #include <GL/glcorearb.h>
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -14,6 +15,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "gl/shared_context.h"
 
 namespace lodbench::gl {
 
@@ -52,12 +55,19 @@ class Device {
 public:
     /// A context must be current; throws EnvironmentError below OpenGL 4.5 core.
     Device();
+    /// The same for a context that shares with `host`'s, on another thread: bytes are counted there
+    /// too (`shared_...`). The host outlives it.
+    explicit Device(Device& host);
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
     [[nodiscard]] const DeviceInfo& info() const { return info_; }
     [[nodiscard]] bool has_extension(std::string_view name) const;
+
+    /// A further context for one of the method's threads. Throws UnsupportedError, which ends the
+    /// cell as skipped, where the driver gives none.
+    [[nodiscard]] std::unique_ptr<SharedContext> make_shared_context();
 
     // Drawing. `mode` is GL_TRIANGLES, GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN or GL_PATCHES (with a
     // tessellation stage that makes triangles); anything else is a ContractError.
@@ -81,6 +91,9 @@ public:
     [[nodiscard]] std::uint64_t uploaded_bytes() const { return uploaded_bytes_; }
     [[nodiscard]] std::uint64_t draw_calls() const { return draw_calls_; }
     [[nodiscard]] const ObjectCounts& objects() const { return objects_; }
+    /// Of the devices that share with this one, at their common peak and in sum; from any thread.
+    [[nodiscard]] std::uint64_t shared_peak_bytes() const { return shared_.peak; }
+    [[nodiscard]] std::uint64_t shared_uploaded_bytes() const { return shared_.uploaded; }
 
     /// Errors and undefined behaviour that the driver's debug callback has reported since the last
     /// call, one line each, with the labels of the objects that were in use; empty when none.
@@ -99,9 +112,13 @@ public:
     void end_capture() noexcept;
     [[nodiscard]] bool capturing() const { return capture_ != nullptr; }
 
+    /// For the harness: how further contexts are made.
+    using ContextFactory = std::function<std::unique_ptr<SharedContext>()>;
+    void set_context_factory(ContextFactory factory) { make_context_ = std::move(factory); }
+
     // For gl/'s own objects.
     void count_allocation(std::int64_t bytes);
-    void count_upload(std::uint64_t bytes) { uploaded_bytes_ += bytes; }
+    void count_upload(std::uint64_t bytes);
     ObjectCounts& object_counts() { return objects_; }
     /// Names the objects that a scope's calls concern, for messages of the driver.
     class Scope {
@@ -132,6 +149,13 @@ private:
     std::uint64_t uploaded_bytes_ = 0;
     std::uint64_t draw_calls_ = 0;
     ObjectCounts objects_;
+    struct Shared {
+        std::atomic<std::int64_t> allocated{0};
+        std::atomic<std::uint64_t> peak{0}, uploaded{0};
+    };
+    Shared shared_;           ///< of the devices of which this is the host
+    Device* host_ = nullptr;  ///< of this one
+    ContextFactory make_context_;
     std::vector<std::string> errors_;
     std::uint64_t errors_not_kept_ = 0;
     std::array<const Object*, 2> active_{};

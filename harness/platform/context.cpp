@@ -120,10 +120,12 @@ public:
     Opened(Opened&& other) noexcept
         : renderer(std::move(other.renderer)),
           display_(other.display_),
+          config_(other.config_),
           context_(std::exchange(other.context_, EGL_NO_CONTEXT)) {}
     Opened& operator=(Opened&& other) noexcept {
         std::swap(renderer, other.renderer);
         std::swap(display_, other.display_);
+        std::swap(config_, other.config_);
         std::swap(context_, other.context_);
         return *this;
     }
@@ -137,13 +139,31 @@ public:
 
     /// Makes a context current, or says in `failure` what refused.
     static std::optional<Opened> open(const Candidate& candidate, std::string& failure);
+    /// A context that shares with this one, not current; EGL_NO_CONTEXT where the driver refuses.
+    [[nodiscard]] EGLContext create_context(EGLContext share) const;
+    [[nodiscard]] EGLContext context() const { return context_; }
+    [[nodiscard]] EGLDisplay display() const { return display_; }
 
     std::string renderer;
 
 private:
     EGLDisplay display_ = EGL_NO_DISPLAY;
+    EGLConfig config_ = EGL_NO_CONFIG_KHR;
     EGLContext context_ = EGL_NO_CONTEXT;
 };
+
+EGLContext Opened::create_context(EGLContext share) const {
+    constexpr std::array<EGLint, 9> kContext = {EGL_CONTEXT_MAJOR_VERSION,
+                                                4,
+                                                EGL_CONTEXT_MINOR_VERSION,
+                                                5,
+                                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                                EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                EGL_CONTEXT_OPENGL_DEBUG,
+                                                EGL_TRUE,
+                                                EGL_NONE};
+    return eglCreateContext(display_, config_, share, kContext.data());
+}
 
 std::optional<Opened> Opened::open(const Candidate& candidate, std::string& failure) {
     const auto get_display = load<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
@@ -170,27 +190,18 @@ std::optional<Opened> Opened::open(const Candidate& candidate, std::string& fail
         failure = "no desktop OpenGL: " + egl_error();
         return std::nullopt;
     }
-    EGLConfig config = EGL_NO_CONFIG_KHR;
     if (!names(extensions, "EGL_KHR_no_config_context")) {
         constexpr std::array<EGLint, 5> kWanted = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                                                    EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
         EGLint count = 0;
-        if (eglChooseConfig(opened.display_, kWanted.data(), &config, 1, &count) == EGL_FALSE ||
+        if (eglChooseConfig(opened.display_, kWanted.data(), &opened.config_, 1, &count) ==
+                EGL_FALSE ||
             count == 0) {
             failure = "no configuration for OpenGL: " + egl_error();
             return std::nullopt;
         }
     }
-    constexpr std::array<EGLint, 9> kContext = {EGL_CONTEXT_MAJOR_VERSION,
-                                                4,
-                                                EGL_CONTEXT_MINOR_VERSION,
-                                                5,
-                                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                                EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                                EGL_CONTEXT_OPENGL_DEBUG,
-                                                EGL_TRUE,
-                                                EGL_NONE};
-    opened.context_ = eglCreateContext(opened.display_, config, EGL_NO_CONTEXT, kContext.data());
+    opened.context_ = opened.create_context(EGL_NO_CONTEXT);
     if (opened.context_ == EGL_NO_CONTEXT) {
         failure = "no OpenGL 4.5 core context: " + egl_error();
         return std::nullopt;
@@ -257,6 +268,32 @@ std::vector<DeviceEntry> list_devices() {
     return entries;
 }
 
+namespace {
+
+class Sharing final : public gl::SharedContext {
+public:
+    Sharing(EGLDisplay display, EGLContext context) : display_(display), context_(context) {}
+    ~Sharing() override { eglDestroyContext(display_, context_); }
+
+    void make_current() override {
+        // The bound API is each thread's own.
+        if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE ||
+            eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
+            throw EnvironmentError("a shared context cannot be made current: " + egl_error());
+        }
+    }
+    void release_current() noexcept override {
+        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglReleaseThread();
+    }
+
+private:
+    EGLDisplay display_;
+    EGLContext context_;
+};
+
+}  // namespace
+
 struct Context::Impl {
     Opened opened;
     std::string description;
@@ -314,6 +351,16 @@ Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
 }
 
 Context::~Context() = default;
+
+std::unique_ptr<gl::SharedContext> Context::make_shared() const {
+    const Opened& opened = impl_->opened;
+    const EGLContext context = opened.create_context(opened.context());
+    if (context == EGL_NO_CONTEXT) {
+        throw UnsupportedError(fmt::format("{} gives no second context that shares objects: {}",
+                                           impl_->description, egl_error()));
+    }
+    return std::make_unique<Sharing>(opened.display(), context);
+}
 
 const std::string& Context::description() const {
     return impl_->description;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gl/shared_context.h"
+
 namespace lodbench::platform {
 
 /// One EGL device as `lodbench list --devices` shows it.
@@ -27,6 +29,10 @@ public:
     ~Context();
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
+
+    /// A further context of the same device, not yet current, that shares objects with this one;
+    /// this one outlives it. Throws UnsupportedError with the driver's words.
+    [[nodiscard]] std::unique_ptr<gl::SharedContext> make_shared() const;
 
     /// What was chosen, in words.
     [[nodiscard]] const std::string& description() const;

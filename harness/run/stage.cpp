@@ -36,6 +36,7 @@ Stage::Stage(StageSetup setup, VitalSigns& signs)
                                             info_.id, extension, device_->info().renderer));
         }
     }
+    device_->set_context_factory([this] { return context_->make_shared(); });
     frame_block_ = gl::Buffer(*device_, "host: Frame", sizeof(gl::Frame));
     frozen_block_ = gl::Buffer(*device_, "host: Frozen", sizeof(gl::Frozen));
     guarded(Call::create, [&] { method_ = library_.create(info_.id, params_); });
@@ -62,6 +63,8 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
     signs_.enter(call);
     try {
         body();
+    } catch (const UnsupportedError& error) {
+        throw MethodSkipped(fmt::format("method '{}' cannot run here: {}", info_.id, error.what()));
     } catch (const std::exception& error) {
         throw MethodFailure(
             fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_, error.what()));

@@ -90,8 +90,12 @@ public:
     /// Bytes that the method's own calls allocated on the GPU at their peak (seen after each call)
     /// and uploaded so far; what the harness draws with (framebuffer, uniform blocks, reference
     /// picture) is not in them.
-    [[nodiscard]] std::uint64_t method_gpu_bytes() const { return std::uint64_t(peak_bytes_); }
-    [[nodiscard]] std::uint64_t method_uploaded_bytes() const { return uploaded_bytes_; }
+    [[nodiscard]] std::uint64_t method_gpu_bytes() const {
+        return std::uint64_t(peak_bytes_) + device_->shared_peak_bytes();
+    }
+    [[nodiscard]] std::uint64_t method_uploaded_bytes() const {
+        return uploaded_bytes_ + device_->shared_uploaded_bytes();
+    }
 
     [[nodiscard]] gl::Device& device() { return *device_; }
     [[nodiscard]] const platform::Context& context() const { return *context_; }

@@ -48,6 +48,8 @@ constexpr Expectation kExpectations[] = {
      "draw of plugin raises_gl_error.so raised 1 GL error"},
     {"draws_nan", "draws-nan", "failed",
      "draw of plugin draws_nan.so sent 3 of 3 vertices that are not finite"},
+    {"unsupported", "unsupported", "skipped",
+     "method 'unsupported' cannot run here: no second moon in this sky"},
 };
 
 TEST(BrokenPlugins, lose_their_own_cell_only_with_status_and_reason) {
