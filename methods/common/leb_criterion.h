@@ -57,6 +57,36 @@ struct LebView {
     }
 };
 
+/// Both sides of the criterion's comparison at a vertex, for all who decide by it.
+template <Metric metric>
+struct LebComparison {
+    double x, y, z;  ///< of the vertex, relative to the eye, metres
+    double error;
+    double reach;  ///< the vertex is active while the eye is nearer than this, metres
+    double away;   ///< planar: depth, metres; Euclidean: distance squared
+
+    LebComparison(const LebView& view, const LebVertex& vertex, int row, int column)
+        : x(view.north_west.x + column * view.spacing.x),
+          y(view.north_west.y - row * view.spacing.y),
+          z(double(vertex.height) - view.eye_height),
+          error(vertex.error) {
+        if constexpr (metric == Metric::euclidean) {
+            reach = view.scale * error + double(vertex.radius);
+            away = x * x + y * y + z * z;
+        } else {
+            reach = (view.scale + 1) * error + double(vertex.radius);
+            away = view.forward.x * x + view.forward.y * y + view.forward.z * z;
+        }
+    }
+    [[nodiscard]] bool active() const {
+        if constexpr (metric == Metric::euclidean) {
+            return reach * reach > away && error > 0;
+        } else {
+            return reach > away && error > 0;
+        }
+    }
+};
+
 /// All frustum planes still to be tested.
 inline constexpr unsigned kAllPlanes = (1U << 5) - 1;
 
@@ -78,20 +108,11 @@ public:
 
     [[nodiscard]] bool active(const LebVertex& vertex, int row, int column,
                               unsigned& planes) const {
-        const double error = vertex.error;
-        const double x = view_.north_west.x + column * view_.spacing.x;
-        const double y = view_.north_west.y - row * view_.spacing.y;
-        const double z = double(vertex.height) - view_.eye_height;
-        if constexpr (metric == Metric::euclidean) {
-            const double reach = view_.scale * error + double(vertex.radius);
-            if (!(reach * reach > x * x + y * y + z * z)) return false;
-        } else {
-            const double depth = view_.forward.x * x + view_.forward.y * y + view_.forward.z * z;
-            if (!((view_.scale + 1) * error + double(vertex.radius) > depth)) return false;
-        }
-        if (!(error > 0)) return false;
+        const LebComparison<metric> compared(view_, vertex, row, column);
+        if (!compared.active()) return false;
         if (planes == 0) return true;
-        return in_view({x, y, z}, double(vertex.radius) + error + view_.cull_margin, planes);
+        return in_view({compared.x, compared.y, compared.z},
+                       double(vertex.radius) + compared.error + view_.cull_margin, planes);
     }
 
 private:

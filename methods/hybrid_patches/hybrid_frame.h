@@ -2,7 +2,7 @@
 // A frame of hybrid-patches on the CPU: select, keep what holds, refine the rest. No OpenGL.
 //
 // Source: Loeffler et al. 2010, sections 4.2 and 4.3. Refinement runs in the background from
-// `begin` to `finish`, so that the triangulations that hold can be drawn meanwhile.
+// `begin` to `finish`, so that the strips that hold can be drawn meanwhile.
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
@@ -17,7 +17,7 @@
 
 namespace lodbench::hybrid_patches {
 
-/// A triangulation made for one viewpoint.
+/// A strip made for one viewpoint.
 struct Refinement {
     std::uint32_t patch = 0;
     std::vector<std::uint16_t> strip;
@@ -47,11 +47,21 @@ inline void refine(const PatchHierarchy& hierarchy, const LebGrid& grid, const L
     }
 }
 
-/// Where in a frame a selected patch's triangulation comes from.
+/// Where in a frame a selected patch's strip comes from.
 struct SelectedPatch {
     std::uint32_t patch = 0;
-    const PatchCache::Entry* kept = nullptr;  ///< nothing: refined in this frame
-    std::uint32_t refinement = 0;             ///< then its index
+    const PatchCache::Entry* reused = nullptr;  ///< nothing: refined in this frame
+    std::uint32_t refinement = 0;               ///< then its index
+};
+
+/// Where in a frame a selected patch's strip is.
+struct PlacedStrip {
+    std::uint32_t patch = 0;
+    const PatchCache::Entry* entry = nullptr;  ///< nothing: a refinement without room in the cache
+    const Refinement* refinement = nullptr;    ///< nothing: reused
+    [[nodiscard]] std::uint32_t triangles() const {
+        return refinement != nullptr ? refinement->triangles : entry->triangles;
+    }
 };
 
 class HybridFrame {
@@ -73,6 +83,7 @@ public:
     void begin(const Camera& camera) {
         aim(camera);
         select();
+        test_spheres();
         sort_out();
         group_.run([this] { refine_all(); });
     }
@@ -85,18 +96,22 @@ public:
         finish();
         camera_ = camera;
         view_ = LebView(grid_, camera, tau_, metric_, 0);
+        cache_.begin_frame(view_.scale);
     }
     void select() { hierarchy_.select(view_, metric_, culling_, numbers_); }
+    void test_spheres() { cache_.test(numbers_, camera_.position, camera_.forward(), holds_); }
     void sort_out() {
-        cache_.begin_frame();
         selected_.clear();
         stale_.clear();
-        const glm::dvec3 forward = camera_.forward();
-        for (const std::uint32_t patch : numbers_) {
-            const PatchCache::Entry* kept =
-                cache_.find(patch, camera_.position, forward, view_.scale);
-            selected_.push_back({patch, kept, std::uint32_t(stale_.size())});
-            if (kept == nullptr) stale_.push_back(patch);
+        for (std::size_t i = 0; i < numbers_.size(); ++i) {
+            const std::uint32_t patch = numbers_[i];
+            if (holds_[i] != 0) {
+                selected_.push_back({patch, cache_.find(patch), 0});
+                continue;
+            }
+            cache_.drop(patch);
+            selected_.push_back({patch, nullptr, std::uint32_t(stale_.size())});
+            stale_.push_back(patch);
         }
         if (refinements_.size() < stale_.size()) refinements_.resize(stale_.size());
     }
@@ -106,14 +121,25 @@ public:
         });
     }
 
+    /// After `finish`, once: makes room in the cache for what was refined, and calls
+    /// visit(const PlacedStrip&) for each selected patch, in the order of the hierarchy.
+    template <typename Visit>
+    void place_strips(const Visit& visit) {
+        for (const SelectedPatch& patch : selected_) {
+            if (patch.reused != nullptr) {
+                visit(PlacedStrip{patch.patch, patch.reused, nullptr});
+                continue;
+            }
+            const Refinement& made = refinements_[patch.refinement];
+            const PatchCache::Entry* entry = cache_.insert(
+                made.patch, made.sphere, std::uint32_t(made.strip.size()), made.triangles);
+            visit(PlacedStrip{made.patch, entry, &made});
+        }
+    }
+
     /// In the order of the hierarchy.
-    [[nodiscard]] std::span<SelectedPatch> selected() { return selected_; }
     [[nodiscard]] std::span<const SelectedPatch> selected() const { return selected_; }
     [[nodiscard]] std::size_t refined() const { return stale_.size(); }
-    /// After `finish`.
-    [[nodiscard]] const Refinement& refinement(const SelectedPatch& patch) const {
-        return refinements_[patch.refinement];
-    }
 
 private:
     const LebGrid& grid_;
@@ -125,6 +151,7 @@ private:
     Camera camera_;
     LebView view_{grid_, camera_, 1, Metric::euclidean, 0};
     std::vector<std::uint32_t> numbers_, stale_;
+    std::vector<std::uint8_t> holds_;  ///< of numbers_
     std::vector<SelectedPatch> selected_;
     std::vector<Refinement> refinements_;
     tbb::task_group group_;

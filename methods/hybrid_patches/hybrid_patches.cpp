@@ -48,7 +48,7 @@ public:
     void prepare(const Terrain& terrain, gl::Device&) override {
         scene_.prepare(terrain);
         const common::RefinerOptions& options = scene_.options();
-        cache_.emplace(scene_.hierarchy().size(), cache_bytes_);
+        cache_.emplace(scene_.hierarchy().size(), cache_bytes_, options.metric);
         frame_.emplace(scene_.grid(), scene_.hierarchy(), *cache_, options.tau, options.metric,
                        options.culling);
     }
@@ -89,13 +89,13 @@ public:
             return;
         }
         for (const SelectedPatch& patch : frame_->selected()) {
-            if (patch.kept != nullptr) commands_.push_back(command(patch.patch, *patch.kept));
+            if (patch.reused != nullptr) commands_.push_back(command(patch.patch, *patch.reused));
         }
-        const std::size_t kept = commands_.size();
+        const std::size_t reused = commands_.size();
         ring_.write(commands_, 0);
-        draw_cached(0, kept);
+        draw_cached(0, reused);
         complete();
-        draw_cached(kept, commands_.size() - kept);
+        draw_cached(reused, commands_.size() - reused);
         draw_streamed();
     }
 
@@ -141,29 +141,26 @@ private:
         if (!pending_) return;
         frame_->finish();
         pending_ = false;
-        const bool kept_are_there = !commands_.empty();
+        const bool reused_are_there = !commands_.empty();
         const std::size_t first = commands_.size();
         tested_ = triangles_ = uploaded_ = 0;
         std::vector<const Refinement*> without_room;
-        for (const SelectedPatch& patch : frame_->selected()) {
-            if (patch.kept != nullptr) {
-                triangles_ += patch.kept->triangles;
-                if (!kept_are_there) commands_.push_back(command(patch.patch, *patch.kept));
-                continue;
+        frame_->place_strips([&](const PlacedStrip& placed) {
+            triangles_ += placed.triangles();
+            if (placed.refinement == nullptr) {
+                if (!reused_are_there) commands_.push_back(command(placed.patch, *placed.entry));
+                return;
             }
-            const Refinement& made = frame_->refinement(patch);
-            triangles_ += made.triangles;
+            const Refinement& made = *placed.refinement;
             tested_ += made.tested;
-            const PatchCache::Entry* entry = cache_->insert(
-                made.patch, made.sphere, std::uint32_t(made.strip.size()), made.triangles);
-            if (entry == nullptr) {
+            if (placed.entry == nullptr) {
                 without_room.push_back(&made);
-                continue;
+                return;
             }
-            cached_.write(std::span<const std::uint16_t>(made.strip), entry->block.offset);
+            cached_.write(std::span<const std::uint16_t>(made.strip), placed.entry->block.offset);
             uploaded_ += made.strip.size() * sizeof(std::uint16_t);
-            commands_.push_back(command(made.patch, *entry));
-        }
+            commands_.push_back(command(placed.patch, *placed.entry));
+        });
         streamed_count_ = without_room.size();
         ring_.write(std::span<const DrawCommand>(commands_).subspan(first), first);
         make_batches(without_room);

@@ -75,8 +75,8 @@ public:
         find_errors();
     }
 
-    /// Patches beyond this many would take more memory than the terrain does: at 160 bytes each,
-    /// hybrid-patches' share, 2.5 GiB.
+    /// Patches beyond this many would take more memory than the terrain does: at 152 bytes each,
+    /// hybrid-patches' largest share, 2.4 GiB.
     static constexpr std::uint64_t kMostPatches = std::uint64_t(1) << 24;
 
     /// Of a terrain of this size, which may be larger than a grid can be.

@@ -21,9 +21,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "common/leb_criterion.h"
 #include "hybrid_patches/patch_hierarchy.h"
@@ -36,7 +39,7 @@ struct SphereOfValidity {
     glm::dvec3 forward{0.0};  ///< planar only
     double scale = 0;         ///< lambda / tau as LebView has it
     double radius = 0;        ///< epsilon, metres; infinite where no vertex can ever change
-    double farthest = 0;      ///< D, metres; 0 where the metric is Euclidean
+    double farthest = 0;      ///< D, metres, > 0; 0 where the metric is Euclidean
 
     [[nodiscard]] bool holds(const glm::dvec3& eye_now, const glm::dvec3& forward_now,
                              double scale_now) const {
@@ -50,6 +53,58 @@ struct SphereOfValidity {
         const double change = glm::length(moved) + glm::length(turned) * farthest;
         return change == 0 || change < radius;
     }
+};
+
+/// The spheres of all patches, made for one scale, laid out for the test of many at a time: next to
+/// select, it should cost nothing. SphereOfValidity::holds says what is tested, and is its oracle.
+/// One line of the cache is read a patch (two where planar), and nothing branches on what it says.
+class SpheresOfValidity {
+public:
+    SpheresOfValidity(std::size_t patches, Metric metric)
+        : balls_(patches), turns_(metric == Metric::planar ? patches : 0) {}
+
+    void set(std::uint32_t patch, const SphereOfValidity& sphere) {
+        // Standing still holds whatever the radius: no distance is less than the smallest number,
+        // but 0.
+        constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
+        const double limit = turns_.empty() ? sphere.radius * sphere.radius : sphere.radius;
+        balls_[patch] = {sphere.eye, std::max(limit, kSmallest)};
+        if (!turns_.empty()) turns_[patch] = {sphere.forward, sphere.farthest};
+    }
+    void clear(std::uint32_t patch) { balls_[patch].limit = 0; }
+
+    /// `holds` becomes as long as `patches`: 1 for each patch whose sphere is set and holds, else
+    /// 0. Eye and direction by value: a byte that is written cannot be theirs.
+    void test(std::span<const std::uint32_t> patches, glm::dvec3 eye, glm::dvec3 forward,
+              std::vector<std::uint8_t>& holds) const {
+        holds.resize(patches.size());
+        std::uint8_t* out = holds.data();
+        const Ball* balls = balls_.data();
+        if (turns_.empty()) {
+            for (const std::uint32_t patch : patches) {
+                const glm::dvec3 moved = balls[patch].eye - eye;
+                *out++ = std::uint8_t(glm::dot(moved, moved) < balls[patch].limit);
+            }
+            return;
+        }
+        for (const std::uint32_t patch : patches) {
+            const double moved = glm::length(eye - balls[patch].eye);
+            const double turned = glm::length(forward - turns_[patch].forward);
+            *out++ = std::uint8_t(moved + turned * turns_[patch].farthest < balls[patch].limit);
+        }
+    }
+
+private:
+    struct alignas(32) Ball {
+        glm::dvec3 eye{0.0};
+        double limit = 0;  ///< radius, squared where Euclidean; 0: no sphere, nothing is less
+    };
+    struct alignas(32) Turn {
+        glm::dvec3 forward{0.0};
+        double farthest = 0;
+    };
+    std::vector<Ball> balls_;
+    std::vector<Turn> turns_;  ///< planar only
 };
 
 /// The test of PatchStripBuilder for a viewpoint: as LebCriterion without culling, to the bit, and
@@ -70,22 +125,12 @@ public:
         ++tested_;
         const LebVertex& vertex =
             vertices_[std::size_t(row) * std::size_t(size_) + std::size_t(column)];
-        const double error = vertex.error;
-        if (!(error > 0)) return false;
-        const double x = view_.north_west.x + column * view_.spacing.x;
-        const double y = view_.north_west.y - row * view_.spacing.y;
-        const double z = double(vertex.height) - view_.eye_height;
-        if constexpr (metric == Metric::euclidean) {
-            const double reach = view_.scale * error + double(vertex.radius);
-            const double squared = x * x + y * y + z * z;
-            limit(reach, std::sqrt(squared), reach + std::abs(z));
-            return reach * reach > squared;
-        } else {
-            const double depth = view_.forward.x * x + view_.forward.y * y + view_.forward.z * z;
-            const double reach = (view_.scale + 1) * error + double(vertex.radius);
-            limit(reach, depth, reach + std::abs(z));
-            return reach > depth;
-        }
+        if (!(vertex.error > 0)) return false;
+        const common::LebComparison<metric> compared(view_, vertex, row, column);
+        const double distance =
+            metric == Metric::euclidean ? std::sqrt(compared.away) : compared.away;
+        limit(compared.reach, distance, compared.reach + std::abs(compared.z));
+        return compared.active();
     }
     [[nodiscard]] double radius() const { return std::max(radius_, 0.0); }
     [[nodiscard]] std::size_t tested() const { return tested_; }

@@ -27,7 +27,7 @@ public:
         : options_(options),
           refiner_(terrain, options),
           hierarchy_(refiner_.grid(), segments, terrain.info().rows, terrain.info().columns),
-          cache_(hierarchy_.size(), cache_bytes),
+          cache_(hierarchy_.size(), cache_bytes, options.metric),
           buffer_(cache_bytes / 2),
           frame_(refiner_.grid(), hierarchy_, cache_, options.tau, options.metric,
                  options.culling) {}
@@ -36,7 +36,6 @@ public:
     struct Drawn {
         std::uint32_t patch;
         std::vector<std::uint16_t> strip;
-        SphereOfValidity sphere;
         bool reused;
     };
 
@@ -45,38 +44,35 @@ public:
         frame_.finish();
         std::vector<Drawn> drawn;
         std::vector<const PatchCache::Entry*> entries;
-        for (const SelectedPatch& patch : frame_.selected()) {
-            const PatchCache::Entry* entry = patch.kept;
-            drawn.push_back({patch.patch, {}, {}, entry != nullptr});
-            if (entry == nullptr) {
-                made_for_[patch.patch] = camera;
-                const Refinement& made = frame_.refinement(patch);
-                entry = cache_.insert(made.patch, made.sphere, std::uint32_t(made.strip.size()),
-                                      made.triangles);
+        frame_.place_strips([&](const PlacedStrip& placed) {
+            drawn.push_back({placed.patch, {}, placed.refinement == nullptr});
+            entries.push_back(placed.entry);
+            if (placed.refinement != nullptr) {
+                const Refinement& made = *placed.refinement;
+                spheres_[placed.patch] = made.sphere;
+                made_for_[placed.patch] = camera;
                 drawn.back().strip = made.strip;
-                drawn.back().sphere = made.sphere;
-                if (entry == nullptr) ++streamed;
+                if (placed.entry != nullptr) {
+                    std::copy(made.strip.begin(), made.strip.end(),
+                              buffer_.begin() + std::ptrdiff_t(placed.entry->block.offset / 2));
+                } else {
+                    ++streamed;
+                }
             }
-            if (entry != nullptr && !drawn.back().reused) {
-                std::copy(drawn.back().strip.begin(), drawn.back().strip.end(),
-                          buffer_.begin() + std::ptrdiff_t(entry->block.offset / 2));
-            }
-            entries.push_back(entry);
-        }
+        });
         // As the GPU reads them: after all of this frame was written.
         for (std::size_t i = 0; i < drawn.size(); ++i) {
             if (entries[i] == nullptr) continue;
             const auto first = buffer_.begin() + std::ptrdiff_t(entries[i]->block.offset / 2);
             drawn[i].strip.assign(first, first + entries[i]->index_count);
-            drawn[i].sphere = entries[i]->sphere;
         }
         return drawn;
     }
 
-    [[nodiscard]] Mesh mesh(const std::vector<Drawn>& drawn) const {
-        std::vector<test::Triangle> triangles;
-        for (const Drawn& patch : drawn) append(patch.patch, patch.strip, triangles);
-        return {refiner_.grid().size(), std::move(triangles)};
+    [[nodiscard]] std::vector<test::Triangle> triangles(const std::vector<Drawn>& drawn) const {
+        std::vector<test::Triangle> all;
+        for (const Drawn& patch : drawn) append(patch.patch, patch.strip, all);
+        return all;
     }
     void append(std::uint32_t patch, std::span<const std::uint16_t> strip,
                 std::vector<test::Triangle>& triangles) const {
@@ -117,6 +113,10 @@ public:
     [[nodiscard]] const PatchHierarchy& hierarchy() const { return hierarchy_; }
     [[nodiscard]] const PatchCache& cache() const { return cache_; }
     [[nodiscard]] HybridFrame& frame() { return frame_; }
+    /// By patch: how far the strip of its last refinement holds.
+    [[nodiscard]] const std::map<std::uint32_t, SphereOfValidity>& spheres() const {
+        return spheres_;
+    }
     /// The camera for which the patch was refined last.
     [[nodiscard]] const Camera& made_for(std::uint32_t patch) const { return made_for_.at(patch); }
     int streamed = 0;
@@ -128,6 +128,7 @@ private:
     PatchCache cache_;
     std::vector<std::uint16_t> buffer_;
     std::map<std::uint32_t, Camera> made_for_;
+    std::map<std::uint32_t, SphereOfValidity> spheres_;  ///< by patch, of the last refinement
     HybridFrame frame_;
 };
 
