@@ -52,7 +52,7 @@ terrain::FloatRaster raster_of(const common::LebGrid& grid, const TerrainInfo& i
 }
 
 void run(const Options& options, const CLI::App& command) {
-    terrain::require_exr_name(options.output);  // before all the work
+    terrain::require_exr_output(options.output);  // before all the work
     const terrain::LoadedTerrain loaded = load(options, command);
     const TerrainInfo& info = loaded.field->info();
     common::LebGrid grid(*loaded.field);

@@ -20,12 +20,14 @@ struct FloatRaster {
     std::vector<std::pair<std::string, std::string>> attributes;  ///< name, text
 };
 
-/// Throws InputError as write_exr does.
-void require_exr_name(const std::filesystem::path& file);
+/// Throws as write_exr does where `file` is not named so or its folder does not take it: for those
+/// who have much to do before they write.
+void require_exr_output(const std::filesystem::path& file);
 
 /// Writes `file` (extension .exr: 32-bit floats, one layer, named channels, compressed without
 /// loss), whole or not at all. OpenImageIO is loaded at the first call. Throws InputError for
-/// another extension or a folder that is not there, EnvironmentError where the disk refuses.
+/// another extension or a folder that is not there, EnvironmentError where the folder or the disk
+/// refuses.
 void write_exr(const FloatRaster& raster, const std::filesystem::path& file);
 
 }  // namespace lodbench::terrain

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
 #include "api/error.h"
 #include "base/modules.h"
 #include "terrain/raster_reader.h"
@@ -36,6 +40,12 @@ Function load_function(const fs::path& file, const char* name, const char* funct
     return reinterpret_cast<Function>(symbol);
 }
 
+/// Where a file is written until it is whole.
+fs::path pending_of(fs::path file) {
+    file += fmt::format(".{}.part", getpid());
+    return file;
+}
+
 }  // namespace
 
 std::unique_ptr<RasterReader> open_with_gdal(const fs::path& file) {
@@ -52,7 +62,7 @@ std::unique_ptr<RasterReader> open_with_oiio(const fs::path& file) {
     return std::unique_ptr<RasterReader>(open(file));
 }
 
-void require_exr_name(const fs::path& file) {
+void require_exr_output(const fs::path& file) {
     if (file.extension() != ".exr") {
         throw InputError(
             fmt::format("{}: rasters of floats are written as .exr; give a name that "
@@ -64,15 +74,25 @@ void require_exr_name(const fs::path& file) {
         throw InputError(fmt::format("{}: the folder {} does not exist; make it first",
                                      file.string(), folder.string()));
     }
+    // Permissions do not say all (file systems are read-only, or none that keeps files): try it.
+    const fs::path pending = pending_of(file);
+    std::FILE* stream = std::fopen(pending.c_str(), "wb");
+    if (stream == nullptr) {
+        throw EnvironmentError(
+            fmt::format("{}: the folder {} takes no file: {}; choose one that may be written to",
+                        file.string(), folder.string(), std::strerror(errno)));
+    }
+    std::fclose(stream);
+    std::error_code ignored;
+    fs::remove(pending, ignored);
 }
 
 void write_exr(const FloatRaster& raster, const fs::path& file) {
-    require_exr_name(file);
+    require_exr_output(file);
     const auto write =
         load_function<WriteExr>(file, "oiio", "lodbench_write_exr",
                                 "EXR is written through OpenImageIO", "LODBENCH_WITH_OIIO");
-    fs::path pending = file;
-    pending += fmt::format(".{}.part", getpid());
+    const fs::path pending = pending_of(file);
     std::error_code error;
     try {
         write(raster, pending);

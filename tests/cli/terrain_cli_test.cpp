@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <tuple>
 
 #include "unit/raster_files.h"
 
@@ -173,12 +174,33 @@ TEST_F(TerrainCommand, errors_leaves_out_the_padding_and_no_part_of_a_file) {
     EXPECT_EQ(json["rows"].asInt(), 30);
     EXPECT_GT(json["centre_radius_m"].asDouble(), 320.0);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
-    EXPECT_EQ(run("errors --synthetic plane -o a.png").text,
-              "lodbench: a.png: rasters of floats are written as .exr; give a name that ends so\n");
-    EXPECT_EQ(run("errors --synthetic plane -o none/a.exr").status, 2);
     EXPECT_EQ(run("errors --synthetic plane -o a.exr --scheme best").status, 2);
 }
 #endif
+
+TEST_F(TerrainCommand, errors_refuses_its_output_before_it_reads_or_computes_anything) {
+    // No such terrains: whatever is said of them comes too late.
+    for (const char* terrain : {"none.tif", "--synthetic mountain"}) {
+        const std::string errors = std::string("errors ") + terrain + " -o ";
+        const std::tuple<const char*, int, const char*> mistakes[] = {
+            {"a.png", 2,
+             "lodbench: a.png: rasters of floats are written as .exr; give a name that ends so\n"},
+            {"a", 2,
+             "lodbench: a: rasters of floats are written as .exr; give a name that ends so\n"},
+            {"none/a.exr", 2,
+             "lodbench: none/a.exr: the folder none does not exist; make it first\n"},
+            // Nobody may make a file there, root neither.
+            {"/sys/a.exr", 4,
+             "lodbench: /sys/a.exr: the folder /sys takes no file: Permission denied; choose one "
+             "that may be written to\n"}};
+        for (const auto& [output, status, message] : mistakes) {
+            const Outcome outcome = run(errors + output);
+            EXPECT_EQ(outcome.status, status) << output;
+            EXPECT_EQ(outcome.text, message) << output;
+        }
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
 
 TEST_F(TerrainCommand, help_lists_every_form_and_parameter) {
     const Outcome outcome = run("synth --help");
