@@ -12,6 +12,8 @@ namespace lodbench::cli {
 void add_list(CLI::App& app, int& status);
 void add_describe(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);
+void add_sweep(CLI::App& app, int& status);
+void add_match(CLI::App& app, int& status);
 void add_cell(CLI::App& app, int& status);  ///< hidden: the child process of `run`
 void add_mesh(CLI::App& app, int& status);
 void add_terrain(CLI::App& app, int& status);

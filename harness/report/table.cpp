@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <set>
+#include <utility>
 
 #include "measure/statistics.h"
-#include "report/json.h"
+#include "report/cell_groups.h"
 
 namespace lodbench::report {
 
@@ -17,19 +16,6 @@ namespace {
 
 constexpr double kMebibyte = 1048576.0;
 constexpr const char* kAbsent = "-";
-
-using Cells = std::vector<const Json::Value*>;
-
-/// The numbers at a path of keys, of the cells that have them.
-std::vector<double> numbers(const Cells& cells, const char* key, const char* inner = nullptr) {
-    std::vector<double> values;
-    for (const Json::Value* cell : cells) {
-        const Json::Value& outer = (*cell)[key];
-        const Json::Value& value = inner == nullptr || !outer.isObject() ? outer : outer[inner];
-        if (const auto number = read_number_or_inf(value)) values.push_back(*number);
-    }
-    return values;
-}
 
 std::string median(std::vector<double> values, const char* format, double unit = 1) {
     const auto centre = measure::percentile(values, 0.5);
@@ -47,43 +33,6 @@ std::string fps_text(const Cells& cells, std::uint64_t seed) {
     return fmt::format("{:.1f} ({:.1f}..{:.1f})", interval->centre, interval->low, interval->high);
 }
 
-std::string value_text(const Json::Value& value) {
-    if (value.isString()) return value.asString();
-    if (value.isBool()) return value.asBool() ? "true" : "false";
-    if (value.isIntegral()) return fmt::format("{}", value.asInt64());
-    return value.isNumeric() ? fmt::format("{}", value.asDouble()) : kAbsent;
-}
-
-/// Names of a method's parameters that have more than one value among its cells.
-std::map<std::string, std::set<std::string>> swept_names(const std::vector<Json::Value>& cells) {
-    std::map<std::string, std::map<std::string, std::set<std::string>>> values;
-    for (const Json::Value& cell : cells) {
-        const Json::Value& params = cell["params"];
-        if (!params.isObject()) continue;
-        for (const std::string& name : params.getMemberNames()) {
-            values[cell["method"].asString()][name].insert(value_text(params[name]));
-        }
-    }
-    std::map<std::string, std::set<std::string>> swept;
-    for (const auto& [method, params] : values) {
-        for (const auto& [name, texts] : params) {
-            if (texts.size() > 1) swept[method].insert(name);
-        }
-    }
-    return swept;
-}
-
-std::string label_of(const Json::Value& cell,
-                     const std::map<std::string, std::set<std::string>>& swept) {
-    std::string label = cell["method"].asString();
-    const auto names = swept.find(label);
-    if (names == swept.end()) return label;
-    for (const std::string& name : names->second) {
-        label += fmt::format(" {}={}", name, value_text(cell["params"][name]));
-    }
-    return label;
-}
-
 }  // namespace
 
 const std::vector<std::string>& table_columns() {
@@ -94,24 +43,10 @@ const std::vector<std::string>& table_columns() {
 }
 
 std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uint64_t seed) {
-    const auto swept = swept_names(cells);
-    std::map<std::pair<std::string, std::string>, Cells> groups;
-    for (const Json::Value& cell : cells) {
-        groups[{cell["scenario"].asString(), label_of(cell, swept)}].push_back(&cell);
-    }
     std::vector<TableRow> rows;
-    for (const auto& [key, members] : groups) {
-        TableRow row{key.first, key.second, {}, {}};
-        Cells good;
-        for (const Json::Value* cell : members) {
-            if ((*cell)["status"].asString() == "ok") {
-                good.push_back(cell);
-            } else {
-                row.failures.push_back(
-                    fmt::format("{} (repetition {}): {}", (*cell)["status"].asString(),
-                                (*cell)["repetition"].asInt(), (*cell)["reason"].asString()));
-            }
-        }
+    for (CellGroup& group : group_cells(cells)) {
+        const Cells& good = group.good;
+        TableRow row{group.scenario, group.label, {}, std::move(group.failures)};
         row.fields = {fps_text(good, seed),
                       median(numbers(good, "frame_ms", "median"), "{:.3f}"),
                       median(numbers(good, "frame_ms", "p90"), "{:.3f}"),

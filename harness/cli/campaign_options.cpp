@@ -1,0 +1,108 @@
+#include "cli/campaign_options.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "cli/options.h"
+#include "report/results.h"
+
+namespace lodbench::cli {
+
+namespace {
+
+/// As it was typed, quoting apart.
+std::string command_line() {
+    std::string text = report::read_text("/proc/self/cmdline");
+    while (!text.empty() && text.back() == '\0') text.pop_back();
+    std::ranges::replace(text, '\0', ' ');
+    return text;
+}
+
+std::filesystem::path default_out() {
+    return std::filesystem::path("lodbench-results") /
+           fmt::format("{:%Y-%m-%dT%H-%M-%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+}  // namespace
+
+void CampaignOptions::add_to(CLI::App& command) {
+    add_repeated(command, "--method,-m", request.methods,
+                 "method to fly; none: as the scenario says");
+    add_repeated(command, "--set", request.settings,
+                 "METHOD.PARAMETER=VALUE[,VALUE...]; several values are swept");
+    command.add_option("--out,-o", request.out,
+                       "results folder; default lodbench-results/<UTC date-time>");
+    add_plugin_dirs(command, request.plugin_dirs);
+    command.add_option("--frames", request.overrides.frames, "frames of the flight")
+        ->check(CLI::Range(1, 1000000));
+    add_size(command, request.overrides.viewport);
+    seed_option_ = add_seed(command, seed_, "seed of the order and of random choices");
+    command.add_option("--repeat", request.overrides.repetitions, "repetitions of each cell")
+        ->check(CLI::Range(1, 10000));
+    add_device(command, request.device);
+    command.add_flag("--json", json, "print one JSON object instead of the table");
+}
+
+void CampaignOptions::finish() {
+    if (*seed_option_) request.overrides.seed = seed_;
+    request.command_line = command_line();
+    if (request.out.empty()) request.out = default_out();
+}
+
+Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void Progress::warned(const std::string& warning) {
+    fmt::print(stderr, "warning: {}\n", warning);
+}
+
+void Progress::cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
+                             double fraction) {
+    const auto now = Clock::now();
+    if (!terminal_ || now - drawn_ < std::chrono::milliseconds(200)) return;
+    drawn_ = now;
+    fmt::print(stderr, "\r\033[K[{}/{}] {} {:.0f} %{}", index + 1, count, cell.spec.id,
+               100 * fraction, time_left(count - index, fraction));
+    std::fflush(stderr);
+}
+
+void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
+                             const Json::Value& record) {
+    ++finished_;
+    const std::string status = record["status"].asString();
+    std::string words = status;
+    if (record["fps"].isNumeric() && status == "ok") {
+        words += fmt::format(", {:.1f} fps", record["fps"].asDouble());
+    } else if (record["reason"].isString()) {
+        words += ": " + record["reason"].asString();
+    }
+    fmt::print(stderr, "{}[{}/{}] {} {}{}\n", terminal_ ? "\r\033[K" : "", index + 1, count,
+               cell.spec.id, words, time_left(count - index - 1, 0));
+}
+
+/// From the mean of the cells so far; nothing before there is one.
+std::string Progress::time_left(std::size_t cells, double fraction) const {
+    const double done = double(finished_) + fraction;
+    if (finished_ == 0 || cells == 0) return {};
+    const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+    const auto seconds = std::int64_t(std::ceil(elapsed / done * (double(cells) - fraction)));
+    return fmt::format(", {}:{:02} left", seconds / 60, seconds % 60);
+}
+
+Json::Value to_json(const run::CampaignOutcome& outcome) {
+    Json::Value object;
+    object["out"] = outcome.out.string();
+    object["exit_status"] = outcome.exit_status();
+    object["error"] = outcome.error.empty() ? Json::Value::null : Json::Value(outcome.error);
+    object["warnings"] = Json::arrayValue;
+    for (const std::string& warning : outcome.warnings) object["warnings"].append(warning);
+    object["cells"] = Json::arrayValue;
+    for (const Json::Value& cell : outcome.cells) object["cells"].append(cell);
+    return object;
+}
+
+}  // namespace lodbench::cli

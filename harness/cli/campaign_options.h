@@ -1,0 +1,54 @@
+#pragma once
+// What the commands that fly campaigns share: their options, and progress as a person sees it.
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "run/campaign.h"
+
+namespace lodbench::cli {
+
+/// The options that say what is flown and how. `request` is complete after `finish`.
+class CampaignOptions {
+public:
+    run::RunRequest request;
+    bool json = false;
+
+    /// Adds --method, --set, --out, --plugin-dir, --frames, --size, --seed, --repeat, --device and
+    /// --json.
+    void add_to(CLI::App& command);
+    /// Once the command line is read: seed, command line and, where none is named, the folder.
+    void finish();
+
+private:
+    std::uint64_t seed_ = 0;
+    CLI::Option* seed_option_ = nullptr;
+};
+
+/// Progress on standard error: one line redrawn on a terminal, a line for each finished cell
+/// elsewhere.
+class Progress final : public run::CampaignObserver {
+public:
+    Progress();
+    void warned(const std::string& warning) override;
+    void cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
+                       double fraction) override;
+    void cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
+                       const Json::Value& record) override;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    [[nodiscard]] std::string time_left(std::size_t cells, double fraction) const;
+
+    const bool terminal_;
+    const Clock::time_point start_ = Clock::now();
+    Clock::time_point drawn_;
+    std::size_t finished_ = 0;
+};
+
+/// An outcome as --json prints it.
+[[nodiscard]] Json::Value to_json(const run::CampaignOutcome& outcome);
+
+}  // namespace lodbench::cli

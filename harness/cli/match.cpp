@@ -1,0 +1,147 @@
+// lodbench match: the methods at equal measured error, triangles or frame time.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+
+#include "api/error.h"
+#include "cli/campaign_options.h"
+#include "cli/commands.h"
+#include "cli/trade_options.h"
+#include "report/json.h"
+#include "report/results.h"
+#include "run/locations.h"
+#include "run/match.h"
+
+namespace lodbench::cli {
+
+namespace {
+
+struct Options : CampaignOptions {
+    std::string error, triangles, frame_ms;
+    std::string metric = "p999";
+    double tolerance_percent = 5;
+    int most_probes = 16;
+};
+
+run::MatchTarget read_target(const Options& options) {
+    using Quantity = run::MatchTarget::Quantity;
+    run::MatchTarget target;
+    target.metric = read_metric(options.metric);
+    target.tolerance = options.tolerance_percent / 100;
+    target.most_probes = options.most_probes;
+    const int named = int(!options.error.empty()) + int(!options.triangles.empty()) +
+                      int(!options.frame_ms.empty());
+    if (named != 1) {
+        throw InputError(fmt::format(
+            "match: {} targets are named; give one of --error PX, --triangles N and --frame-ms T",
+            named));
+    }
+    if (!options.error.empty()) {
+        target.value = read_positive(options.error, "px", "--error");
+    } else if (!options.triangles.empty()) {
+        target.quantity = Quantity::triangles;
+        target.value = read_positive(options.triangles, "", "--triangles");
+    } else {
+        target.quantity = Quantity::frame_ms;
+        target.value = read_positive(options.frame_ms, "ms", "--frame-ms");
+    }
+    return target;
+}
+
+std::string number_text(const std::optional<double>& value) {
+    return value ? fmt::format("{:.6g}", *value) : "-";
+}
+
+/// What was found, a line a method.
+std::string search_text(const std::vector<run::MatchedMethod>& methods) {
+    std::string text = fmt::format("| {:<16} | {:<22} | {:>12} | {:<11} | {:>6} |\n", "method",
+                                   "knob", "achieved", "outcome", "probes");
+    text += fmt::format("|{:-<18}|{:-<24}|{:->13}:|{:-<13}|{:->7}:|\n", "", "", "", "", "");
+    std::string remarks;
+    for (const run::MatchedMethod& method : methods) {
+        const auto& best = method.search.best;
+        const std::string knob = !method.knob ? "exact: none"
+                                 : best ? fmt::format("{} = {:.6g}", method.knob->name, best->knob)
+                                        : method.knob->name;
+        text += fmt::format("| {:<16} | {:<22} | {:>12} | {:<11} | {:>6} |\n", method.method, knob,
+                            number_text(best ? best->value : std::nullopt),
+                            method.knob ? name_of(method.search.outcome) : "-",
+                            method.search.probes.size());
+        if (!method.search.monotone) {
+            remarks += fmt::format(
+                "- {}: what was measured neither rises nor falls throughout with "
+                "{}: another value may meet the target too\n",
+                method.method, method.knob->name);
+        }
+        if (!method.failure.empty()) {
+            remarks += fmt::format("- {}: a value could not be flown: {}\n", method.method,
+                                   method.failure);
+        }
+    }
+    return text + (remarks.empty() ? "" : "\n" + remarks);
+}
+
+int match(Options& options) {
+    const run::MatchTarget target = read_target(options);
+    options.finish();
+    Progress progress;
+    const run::MatchOutcome outcome = run::match(
+        options.request, target, run::executable_path(), progress,
+        [](const run::MatchedMethod& method, const run::Probe& probe, const std::string& failure) {
+            fmt::print(stderr, "{}: {} = {:.6g} gives {}\n", method.method, method.knob->name,
+                       probe.knob, failure.empty() ? number_text(probe.value) : failure);
+        });
+    std::map<std::string, std::string> knobs;
+    for (const run::MatchedMethod& method : outcome.methods) {
+        if (method.knob) knobs[method.method] = method.knob->name;
+    }
+    const auto rows =
+        report::trade_rows(outcome.campaign.cells, knobs, target.metric, outcome.campaign.seed);
+    const std::string text =
+        fmt::format("{}, within {:.3g} %\n\n{}\n{}", target.words(), 100 * target.tolerance,
+                    search_text(outcome.methods), report::trade_text(rows, target.metric, {}));
+    report::write_whole(outcome.campaign.out / "match.md", "# lodbench match\n\n" + text);
+    if (options.json) {
+        Json::Value object = to_json(outcome.campaign);
+        object["match"] = run::to_json(target, outcome.methods);
+        object["trade"] = report::to_json(rows);
+        fmt::print("{}\n", report::to_text(object));
+    } else {
+        fmt::print("\n{}\nresults   {}\n", text, outcome.campaign.out.string());
+    }
+    if (!outcome.campaign.error.empty()) {
+        fmt::print(stderr, "lodbench: {}\n", outcome.campaign.error);
+    }
+    return outcome.campaign.exit_status();
+}
+
+}  // namespace
+
+void add_match(CLI::App& app, int& status) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "match",
+        "Finds each method's knob value at which measured error, triangles or frame time meet a "
+        "target, then flies all of them there.");
+    command->add_option("SCENARIO", options->request.scenarios,
+                        "scenario file; none: the demo over Puget Sound");
+    command->add_option("--error", options->error, "pixel error in pixels, as 1px");
+    command->add_option("--triangles", options->triangles, "triangles, mean of the flight");
+    command->add_option("--frame-ms", options->frame_ms, "frame time in milliseconds, mean");
+    add_metric(*command, options->metric);
+    command
+        ->add_option("--tolerance", options->tolerance_percent,
+                     "percent by which the target may be missed")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 50.0));
+    command->add_option("--probes", options->most_probes, "most flights of a search")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 100));
+    options->add_to(*command);
+    command->callback([options, &status] { status = match(*options); });
+}
+
+}  // namespace lodbench::cli

@@ -1,0 +1,246 @@
+#include "report/trade.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "api/error.h"
+#include "report/cell_groups.h"
+#include "report/json.h"
+
+namespace lodbench::report {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool finite(const TradePoint& point) {
+    return std::isfinite(point.cost) && std::isfinite(point.error);
+}
+
+/// The rows of one scenario after the other.
+template <typename Rows, typename Use>
+void each_scenario(Rows& rows, const Use& use) {
+    for (std::size_t begin = 0; begin < rows.size();) {
+        std::size_t end = begin + 1;
+        while (end < rows.size() && rows[end].scenario == rows[begin].scenario) ++end;
+        use(std::span(rows).subspan(begin, end - begin));
+        begin = end;
+    }
+}
+
+std::vector<TradePoint> points_of(std::span<const TradeRow> rows) {
+    std::vector<TradePoint> points;
+    for (const TradeRow& row : rows) points.push_back(row.point());
+    return points;
+}
+
+/// Columns of equal width, so that the Markdown reads well as text too.
+std::string aligned(const std::vector<std::vector<std::string>>& lines) {
+    std::vector<std::size_t> widths(lines.front().size(), 3);
+    for (const auto& line : lines) {
+        for (std::size_t i = 0; i < line.size(); ++i)
+            widths[i] = std::max(widths[i], line[i].size());
+    }
+    std::string text;
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        for (std::size_t i = 0; i < widths.size(); ++i) {
+            text += i == 0 ? fmt::format("| {:<{}} ", lines[l][i], widths[i])
+                           : fmt::format("| {:>{}} ", lines[l][i], widths[i]);
+        }
+        text += "|\n";
+        if (l != 0) continue;
+        for (std::size_t i = 0; i < widths.size(); ++i) {
+            text += "|" + std::string(widths[i] + 1, '-') + (i == 0 ? "-" : ":");
+        }
+        text += "|\n";
+    }
+    return text;
+}
+
+std::string text_of(const std::optional<double>& value, const char* format, double unit = 1) {
+    return value ? fmt::format(fmt::runtime(format), *value / unit) : "-";
+}
+
+}  // namespace
+
+std::vector<std::size_t> pareto_front(std::span<const TradePoint> points) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (finite(points[i])) order.push_back(i);
+    }
+    std::ranges::sort(
+        order, {}, [&](std::size_t i) { return std::tuple(points[i].cost, points[i].error, i); });
+    std::vector<std::size_t> front;
+    double least = kInfinity;
+    for (const std::size_t i : order) {
+        const TradePoint& point = points[i];
+        const bool equal = !front.empty() && points[front.back()].cost == point.cost &&
+                           points[front.back()].error == point.error;
+        if (!equal && point.error >= least) continue;
+        least = point.error;
+        front.push_back(i);
+    }
+    return front;
+}
+
+double hypervolume(std::span<const TradePoint> points, const TradePoint& reference) {
+    if (!finite(reference) || !(reference.cost > 0) || !(reference.error > 0)) {
+        throw ContractError(fmt::format("hypervolume: the reference is ({}, {}), expected positive",
+                                        reference.cost, reference.error));
+    }
+    std::vector<TradePoint> within;
+    for (const TradePoint& point : points) {
+        if (finite(point) && point.cost >= 0 && point.error >= 0 && point.cost <= reference.cost &&
+            point.error <= reference.error) {
+            within.push_back(point);
+        }
+    }
+    double area = 0;
+    double ceiling = reference.error;
+    for (const std::size_t i : pareto_front(within)) {
+        area += (reference.cost - within[i].cost) * (ceiling - within[i].error);
+        ceiling = within[i].error;
+    }
+    return area / (reference.cost * reference.error);
+}
+
+const char* name_of(ErrorMetric metric) {
+    switch (metric) {
+        case ErrorMetric::p999: return "p999";
+        case ErrorMetric::max: return "max";
+        case ErrorMetric::rms: break;
+    }
+    return "rms";
+}
+
+std::optional<ErrorMetric> error_metric(const std::string& name) {
+    for (const ErrorMetric metric : {ErrorMetric::p999, ErrorMetric::max, ErrorMetric::rms}) {
+        if (name == name_of(metric)) return metric;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric) {
+    for (const char* field : {"pixel_error_realtime_px", "pixel_error_px"}) {
+        const Json::Value& errors = cell[field];
+        if (errors.isObject()) return read_number_or_inf(errors[name_of(metric)]);
+    }
+    return std::nullopt;
+}
+
+TradePoint TradeRow::point() const {
+    return {frame_ms ? frame_ms->centre : kInfinity, error.value_or(kInfinity)};
+}
+
+std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
+                                 const std::map<std::string, std::string>& knobs,
+                                 ErrorMetric metric, std::uint64_t seed) {
+    std::vector<TradeRow> rows;
+    for (CellGroup& group : group_cells(cells)) {
+        TradeRow row;
+        row.scenario = group.scenario;
+        row.method = group.method;
+        row.label = group.label;
+        row.failures = std::move(group.failures);
+        const auto knob = knobs.find(group.method);
+        std::vector<double> errors;
+        for (const Json::Value* cell : group.good) {
+            if (knob != knobs.end()) row.knob = read_number_or_inf((*cell)["params"][knob->second]);
+            if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
+        }
+        row.error = measure::median(errors);
+        row.frame_ms = measure::run_interval(numbers(group.good, "frame_ms", "mean"), seed);
+        row.triangles = measure::median(numbers(group.good, "triangles", "mean"));
+        row.gpu_bytes = measure::median(numbers(group.good, "gpu_bytes"));
+        row.prepare_s = measure::median(numbers(group.good, "prepare_s"));
+        rows.push_back(std::move(row));
+    }
+    std::ranges::stable_sort(rows, {}, [](const TradeRow& row) {
+        return std::tuple(row.scenario, row.method, row.knob.value_or(0));
+    });
+    each_scenario(rows, [](std::span<TradeRow> scenario) {
+        for (const std::size_t i : pareto_front(points_of(scenario))) scenario[i].on_front = true;
+    });
+    return rows;
+}
+
+std::optional<TradePoint> reference_point(std::span<const TradeRow> rows) {
+    constexpr double kWorse = 1.1;
+    TradePoint worst;
+    for (const TradeRow& row : rows) {
+        const TradePoint point = row.point();
+        if (!finite(point)) continue;
+        worst.cost = std::max(worst.cost, kWorse * point.cost);
+        worst.error = std::max(worst.error, kWorse * point.error);
+    }
+    if (worst.cost > 0 && worst.error > 0) return worst;
+    return std::nullopt;
+}
+
+Json::Value to_json(const std::vector<TradeRow>& rows) {
+    Json::Value array = Json::arrayValue;
+    for (const TradeRow& row : rows) {
+        Json::Value json;
+        json["scenario"] = row.scenario;
+        json["method"] = row.method;
+        json["label"] = row.label;
+        json["knob"] = number(row.knob);
+        json["pixel_error_px"] = number_or_inf(row.error);
+        json["frame_ms"] = row.frame_ms ? number(row.frame_ms->centre) : Json::Value::null;
+        json["triangles"] = number(row.triangles);
+        json["gpu_bytes"] = number(row.gpu_bytes);
+        json["prepare_s"] = number(row.prepare_s);
+        json["on_front"] = row.on_front;
+        array.append(json);
+    }
+    return array;
+}
+
+std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
+                       const std::optional<TradePoint>& reference) {
+    std::string text;
+    each_scenario(rows, [&](std::span<const TradeRow> scenario) {
+        text += fmt::format("{}## {}\n\n", text.empty() ? "" : "\n", scenario.front().scenario);
+        std::vector<std::vector<std::string>> lines = {
+            {"method", std::string(name_of(metric)) + " px", "frame ms (range)", "triangles",
+             "GPU MiB", "prepare s", "front"}};
+        std::vector<std::string> failures;
+        for (const TradeRow& row : scenario) {
+            lines.push_back(
+                {row.label, text_of(row.error, "{:.3f}"),
+                 row.frame_ms ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
+                                            row.frame_ms->low, row.frame_ms->high)
+                              : "-",
+                 text_of(row.triangles, "{:.0f}"), text_of(row.gpu_bytes, "{:.1f}", 1048576),
+                 text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
+            for (const std::string& failure : row.failures) {
+                failures.push_back(row.label + ", " + failure);
+            }
+        }
+        text += aligned(lines);
+        for (const std::string& failure : failures) text += fmt::format("\n- {}", failure);
+        if (!failures.empty()) text += "\n";
+        const auto corner = reference ? reference : reference_point(scenario);
+        if (!corner) return;
+        text += fmt::format(
+            "\nHypervolume of {} pixel error and frame time, of the rectangle up to "
+            "{:.3f} px and {:.3f} ms{}:\n\n",
+            name_of(metric), corner->error, corner->cost,
+            reference ? "" : " (a tenth beyond the worst point)");
+        std::map<std::string, std::vector<TradePoint>> methods;
+        for (const TradeRow& row : scenario) methods[row.method].push_back(row.point());
+        std::vector<std::vector<std::string>> volumes = {{"method", "hypervolume"}};
+        for (const auto& [method, points] : methods) {
+            volumes.push_back({method, fmt::format("{:.4f}", hypervolume(points, *corner))});
+        }
+        volumes.push_back(
+            {"all", fmt::format("{:.4f}", hypervolume(points_of(scenario), *corner))});
+        text += aligned(volumes);
+    });
+    return text;
+}
+
+}  // namespace lodbench::report

@@ -1,0 +1,74 @@
+#pragma once
+// Speed against measured accuracy: the points of a sweep, those that no other point beats, and how
+// much of the plane they command.
+
+#include <json/value.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "measure/statistics.h"
+
+namespace lodbench::report {
+
+/// Both are to be small. What is not finite was not measured, or is uncovered ground.
+struct TradePoint {
+    double cost = 0;
+    double error = 0;
+};
+
+/// Indices of the points than which no other is better in one and at least as good in the other, by
+/// rising cost, then by index. Equal points are all on it; points that are not finite never are.
+[[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const TradePoint> points);
+
+/// The part, 0 to 1, of the rectangle from (0, 0) to `reference` in which some point is at least as
+/// good (Zitzler and Thiele 1998, in two dimensions). Points that are not within the rectangle, or
+/// not finite, or negative count for nothing. Throws ContractError unless the reference is positive
+/// and finite.
+[[nodiscard]] double hypervolume(std::span<const TradePoint> points, const TradePoint& reference);
+
+/// Which summary of the pixel error is meant.
+enum class ErrorMetric { p999, max, rms };
+[[nodiscard]] const char* name_of(ErrorMetric metric);
+/// "p999", "max", "rms"; nothing for anything else.
+[[nodiscard]] std::optional<ErrorMetric> error_metric(const std::string& name);
+
+/// The pixel error of a cell (an object of cells.jsonl): of the real-time replay where there is
+/// one, for that is the surface which the frame times drew. Infinite where it is; nothing where it
+/// was not measured.
+[[nodiscard]] std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric);
+
+/// One setting of a method on one scenario, over its repetitions.
+struct TradeRow {
+    std::string scenario, method, label;
+    std::optional<double> knob;   ///< value of the quality knob; nothing without one
+    std::optional<double> error;  ///< pixels, see pixel_error; median of the repetitions
+    std::optional<measure::RunInterval> frame_ms;  ///< of the repetitions' means
+    std::optional<double> triangles, gpu_bytes, prepare_s;
+    bool on_front = false;  ///< of error against frame time, within its scenario
+    std::vector<std::string> failures;
+    [[nodiscard]] TradePoint point() const;  ///< milliseconds, pixels; infinite where absent
+};
+
+/// `knobs`: each method's quality knob by its id. Rows in order of scenario, method and knob.
+[[nodiscard]] std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
+                                               const std::map<std::string, std::string>& knobs,
+                                               ErrorMetric metric, std::uint64_t seed);
+
+/// A tenth worse than the worst finite point of a scenario's rows; nothing where there is none.
+[[nodiscard]] std::optional<TradePoint> reference_point(std::span<const TradeRow> rows);
+
+/// Absent figures are null.
+[[nodiscard]] Json::Value to_json(const std::vector<TradeRow>& rows);
+
+/// Markdown, readable in a terminal: one table a scenario, and below it each method's hypervolume
+/// and that of all, against `reference` or each scenario's own, which is stated.
+[[nodiscard]] std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
+                                     const std::optional<TradePoint>& reference);
+
+}  // namespace lodbench::report

@@ -1,0 +1,208 @@
+#include "run/match.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "api/error.h"
+#include "report/json.h"
+#include "report/results.h"
+
+namespace lodbench::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The plugins' methods that the request flies, in order of their ids.
+std::vector<MethodInfo> methods_of(const Plan& plan, const std::vector<PluginListing>& plugins) {
+    std::set<std::string> ids;
+    for (const PlannedCell& cell : plan.cells) ids.insert(cell.spec.method);
+    std::vector<MethodInfo> methods;
+    for (const std::string& id : ids) methods.push_back(find_method(plugins, id, "match"));
+    return methods;
+}
+
+/// Each method has one setting: a swept one would make several surfaces, each with a knob of its
+/// own.
+void require_one_setting(const Plan& plan, const std::string& method,
+                         const std::optional<Knob>& knob) {
+    const PlannedCell* first = nullptr;
+    for (const PlannedCell& cell : plan.cells) {
+        if (cell.spec.method != method) continue;
+        if (first == nullptr) first = &cell;
+        if (cell.spec.settings != first->spec.settings) {
+            throw InputError(
+                fmt::format("match: method '{}' is flown with several settings; give each of its "
+                            "parameters one "
+                            "value",
+                            method));
+        }
+    }
+    if (first == nullptr || !knob) return;
+    for (const auto& [name, value] : first->spec.settings) {
+        if (name != knob->name) continue;
+        throw InputError(
+            fmt::format("match: {}.{} is set to {}, and it is what is to be found; leave it out",
+                        method, name, value));
+    }
+}
+
+/// What a probe's campaign says goes to nobody but for warnings, once.
+class Quiet final : public CampaignObserver {
+public:
+    explicit Quiet(CampaignObserver& observer) : observer_(observer) {}
+    void warned(const std::string& warning) override {
+        if (told_.insert(warning).second) observer_.warned(warning);
+    }
+
+private:
+    CampaignObserver& observer_;
+    std::set<std::string> told_;
+};
+
+}  // namespace
+
+std::string MatchTarget::words() const {
+    switch (quantity) {
+        case Quantity::pixel_error:
+            return fmt::format("{} of the pixel error = {} px", report::name_of(metric), value);
+        case Quantity::triangles: return fmt::format("mean triangles = {}", value);
+        case Quantity::frame_ms: break;
+    }
+    return fmt::format("mean frame time = {} ms", value);
+}
+
+std::optional<double> MatchTarget::measured(const Json::Value& cell) const {
+    const auto mean = [&](const char* field) -> std::optional<double> {
+        const Json::Value& object = cell[field];
+        return object.isObject() ? report::read_number_or_inf(object["mean"]) : std::nullopt;
+    };
+    switch (quantity) {
+        case Quantity::pixel_error: return report::pixel_error(cell, metric);
+        case Quantity::triangles: return mean("triangles");
+        case Quantity::frame_ms: break;
+    }
+    return mean("frame_ms");
+}
+
+Json::Value to_json(const MatchTarget& target, const std::vector<MatchedMethod>& methods) {
+    Json::Value json;
+    json["schema_version"] = report::kSchemaVersion;
+    constexpr const char* kNames[] = {"pixel_error_px", "triangles", "frame_ms"};
+    json["quantity"] = kNames[int(target.quantity)];
+    json["metric"] = target.quantity == MatchTarget::Quantity::pixel_error
+                         ? Json::Value(report::name_of(target.metric))
+                         : Json::Value("mean");
+    json["target"] = target.value;
+    json["tolerance"] = target.tolerance;
+    json["methods"] = Json::arrayValue;
+    for (const MatchedMethod& method : methods) {
+        Json::Value entry;
+        entry["method"] = method.method;
+        entry["knob"] = method.knob ? Json::Value(method.knob->name) : Json::Value::null;
+        entry["outcome"] =
+            method.knob ? Json::Value(name_of(method.search.outcome)) : Json::Value::null;
+        const auto& best = method.search.best;
+        entry["knob_value"] = best ? Json::Value(best->knob) : Json::Value::null;
+        entry["achieved"] = best ? report::number_or_inf(best->value) : Json::Value::null;
+        entry["monotone"] = method.knob ? Json::Value(method.search.monotone) : Json::Value::null;
+        entry["failure"] = method.failure.empty() ? Json::Value::null : Json::Value(method.failure);
+        entry["probes"] = Json::arrayValue;
+        for (const Probe& probe : method.search.probes) {
+            Json::Value pair = Json::arrayValue;
+            pair.append(probe.knob);
+            pair.append(report::number_or_inf(probe.value));
+            entry["probes"].append(pair);
+        }
+        json["methods"].append(entry);
+    }
+    return json;
+}
+
+MatchOutcome match(const RunRequest& request, const MatchTarget& target, const fs::path& program,
+                   CampaignObserver& observer, const ProbeObserver& probed) {
+    if (request.scenarios.size() > 1) {
+        throw InputError("match: name one scenario; a knob that fits one flight fits no other");
+    }
+    for (const char* taken : {"run.json", "cells.jsonl", "search", "match.json"}) {
+        if (!fs::exists(request.out / taken)) continue;
+        throw InputError(
+            fmt::format("{}: there is already a {} in this folder; choose another "
+                        "with --out",
+                        request.out.string(), taken));
+    }
+    const std::vector<PluginListing> plugins = list_plugins(plugin_folders(request.plugin_dirs));
+    const Plan plan = make_plan(request, plugins);
+    MatchOutcome outcome;
+    for (const MethodInfo& info : methods_of(plan, plugins)) {
+        MatchedMethod& method = outcome.methods.emplace_back();
+        method.method = info.id;
+        method.knob = quality_knob(info);
+        require_one_setting(plan, info.id, method.knob);
+    }
+
+    const auto settings_of = [&request](const std::string& method) {
+        std::vector<std::string> settings;
+        std::ranges::copy_if(
+            request.settings, std::back_inserter(settings),
+            [&](const std::string& setting) { return setting.starts_with(method + "."); });
+        return settings;
+    };
+    Quiet quiet(observer);
+    for (MatchedMethod& method : outcome.methods) {
+        if (!method.knob) continue;
+        int number = 0;
+        const auto measure = [&](double value) -> std::optional<double> {
+            RunRequest probe = request;
+            probe.methods = {method.method};
+            probe.settings = settings_of(method.method);
+            probe.settings.push_back(fmt::format("{}.{}={}", method.method, method.knob->name,
+                                                 method.knob->text(value)));
+            probe.out = request.out / "search" / fmt::format("{}-{:02}", method.method, number++);
+            probe.overrides.repetitions = 1;
+            probe.overrides.truth = target.quantity == MatchTarget::Quantity::pixel_error;
+            const CampaignOutcome flown = run_campaign(probe, program, quiet);
+            if (!flown.error.empty()) throw EnvironmentError(flown.error);
+            const Json::Value& cell = flown.cells.front();
+            const auto measured = target.measured(cell);
+            std::string failure;
+            if (!measured) {
+                failure = cell["reason"].isString() ? cell["reason"].asString()
+                                                    : "the quantity was not measured";
+                method.failure = failure;
+            }
+            probed(method, {value, measured}, failure);
+            return measured;
+        };
+        method.search =
+            search_knob(*method.knob, target.value, target.tolerance, target.most_probes, measure);
+    }
+
+    RunRequest final = request;
+    final.methods.clear();
+    for (const MatchedMethod& method : outcome.methods) {
+        if (method.knob && !method.search.best) continue;  // no value of its knob could be flown
+        final.methods.push_back(method.method);
+        if (!method.knob) continue;
+        final.settings.push_back(fmt::format("{}.{}={}", method.method, method.knob->name,
+                                             method.knob->text(method.search.best->knob)));
+    }
+    std::erase_if(final.settings, [&](const std::string& setting) {
+        return std::ranges::none_of(final.methods, [&](const std::string& method) {
+            return setting.starts_with(method + ".");
+        });
+    });
+    if (final.methods.empty()) {
+        throw EnvironmentError(
+            fmt::format("match: no method could be flown; the last said: {}",
+                        outcome.methods.empty() ? "" : outcome.methods.back().failure));
+    }
+    report::write_whole(request.out / "match.json",
+                        report::to_text(to_json(target, outcome.methods), true) + "\n");
+    outcome.campaign = run_campaign(final, program, observer);
+    return outcome;
+}
+
+}  // namespace lodbench::run

@@ -1,0 +1,145 @@
+// `lodbench sweep` and `lodbench match` as a person types them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cli/run_lodbench.h"
+
+namespace lodbench::test {
+namespace {
+
+using testing::HasSubstr;
+using Arguments = std::vector<std::string>;
+
+class Trade : public testing::Test {
+protected:
+    Finished lodbench(const std::string& command, const Arguments& more) {
+        const fs::path file = folder_.path() / "small.toml";
+        std::ofstream(file) << "name = \"small\"\n[terrain]\nsynthetic = \"ridged\"\nrows = 129\n"
+                               "columns = 129\nspacing = 10\n[viewport]\nwidth = 96\nheight = 72\n"
+                               "[flight]\nkind = \"line\"\nframes = 4\nwarmup_frames = 1\n"
+                               "start = [640, 100, 400]\nend = [640, 600, 400]\npitch = -30\n"
+                               "[measure]\nevery = 2\nshots = [0]\n[run]\nrepetitions = 1\n";
+        Arguments arguments = {command, file.string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_lodbench(arguments, folder_.path(), [this] {
+            dup2(open((folder_.path() / "errors").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), 2);
+        });
+    }
+    [[nodiscard]] std::string errors() const { return text_of(folder_.path() / "errors"); }
+    [[nodiscard]] std::string out(const std::string& name = "out") const {
+        return (folder_.path() / name).string();
+    }
+    Json::Value json(const Finished& finished) {
+        EXPECT_EQ(finished.status, 0) << errors();
+        return report::parse_json(finished.output, "standard output");
+    }
+
+    ScratchFolder folder_;
+};
+
+TEST_F(Trade, sweep_flies_each_knob_around_its_default_and_marks_the_front) {
+    const Json::Value swept =
+        json(lodbench("sweep", {"--method", "lindstrom", "--method", "full-grid", "--points", "3",
+                                "--json", "--out", out()}));
+    ASSERT_EQ(swept["cells"].size(), 4U);
+    ASSERT_EQ(swept["trade"].size(), 4U);
+    EXPECT_EQ(swept["trade"][0]["method"], "full-grid");
+    EXPECT_TRUE(swept["trade"][0]["knob"].isNull());
+    EXPECT_TRUE(swept["trade"][0]["on_front"].asBool()) << "no other is as exact";
+    double error = -1;
+    for (const Json::ArrayIndex i : {1U, 2U, 3U}) {
+        EXPECT_EQ(swept["trade"][i]["knob"].asDouble(), 0.25 * std::pow(2.0, i));
+        EXPECT_GT(swept["trade"][i]["pixel_error_px"].asDouble(), error);
+        error = swept["trade"][i]["pixel_error_px"].asDouble();
+    }
+    EXPECT_THAT(text_of(fs::path(out()) / "trade.md"), HasSubstr("| lindstrom tau=0.5 |"));
+}
+
+TEST_F(Trade, values_of_the_user_and_of_the_scenario_go_before_those_around_the_default) {
+    const Json::Value swept =
+        json(lodbench("sweep", {"--method", "lindstrom", "--method", "pgm", "--method",
+                                "static-patches", "--set", "pgm.grid=16", "--knob-values",
+                                "lindstrom=3,9", "--points", "1", "--json", "--out", out()}));
+    std::string labels;
+    for (const Json::Value& row : swept["trade"]) labels += row["label"].asString() + ";";
+    EXPECT_EQ(labels, "lindstrom tau=3;lindstrom tau=9;pgm;static-patches;");
+}
+
+TEST_F(Trade, wrong_options_are_refused_before_anything_flies) {
+    const struct {
+        const char* command;
+        Arguments arguments;
+        const char* words;
+    } wrong[] = {
+        {"sweep", {"--knob-values", "lindstrom"}, "expected METHOD=VALUE[,VALUE...]"},
+        {"sweep", {"--knob-values", "moon=1"}, "method 'moon' is not flown in this sweep"},
+        {"sweep", {"--method", "full-grid", "--knob-values", "full-grid=1"}, "has no quality knob"},
+        {"sweep",
+         {"--method", "pgm", "--set", "pgm.grid=9", "--knob-values", "pgm=8"},
+         "pgm.grid is set elsewhere too"},
+        {"sweep", {"--metric", "mean"}, "expected p999, max or rms"},
+        {"sweep", {"--reference", "3"}, "expected PX,MS"},
+        {"sweep", {"--reference", "3,-1"}, "expected a positive number"},
+        {"match", {}, "0 targets are named"},
+        {"match", {"--error", "1px", "--triangles", "5"}, "2 targets are named"},
+        {"match", {"--error", "1m"}, "as 1 or 1px"},
+        {"match", {"--error", "0"}, "expected a positive number"},
+        {"match", {"--frame-ms", "inf"}, "expected a positive number"},
+        {"match",
+         {"--error", "1", "--method", "lindstrom", "--set", "lindstrom.tau=1"},
+         "it is what is to be found"},
+        {"match",
+         {"--error", "1", "--method", "pgm", "--set", "pgm.margin=0,0.1"},
+         "several settings"},
+    };
+    for (const auto& test : wrong) {
+        Arguments arguments = test.arguments;
+        arguments.insert(arguments.end(), {"--out", out()});
+        EXPECT_EQ(lodbench(test.command, arguments).status, 2) << test.words;
+        EXPECT_THAT(errors(), HasSubstr(test.words));
+        EXPECT_FALSE(fs::exists(fs::path(out()) / "run.json"));
+    }
+}
+
+TEST_F(Trade, match_finds_the_knob_and_flies_it_whatever_the_seed) {
+    std::vector<double> found;
+    for (const char* seed : {"1", "77"}) {
+        const Json::Value matched =
+            json(lodbench("match", {"--error", "2px", "--method", "lindstrom", "--method",
+                                    "full-grid", "--seed", seed, "--json", "--out", out(seed)}));
+        ASSERT_EQ(matched["match"]["methods"].size(), 2U);
+        const Json::Value& method = matched["match"]["methods"][1];
+        EXPECT_EQ(method["method"], "lindstrom");
+        EXPECT_EQ(method["outcome"], "met");
+        EXPECT_NEAR(method["achieved"].asDouble(), 2.0, 0.1);
+        found.push_back(method["knob_value"].asDouble());
+        // What was flown in the end is what was found, and it measures the same.
+        for (const Json::Value& row : matched["trade"]) {
+            if (row["method"] != "lindstrom") continue;
+            EXPECT_EQ(row["knob"].asDouble(), found.back());
+            EXPECT_NEAR(row["pixel_error_px"].asDouble(), 2.0, 0.1);
+        }
+        EXPECT_EQ(report::parse_json(text_of(fs::path(out(seed)) / "match.json"), "match.json"),
+                  matched["match"]);
+        EXPECT_THAT(text_of(fs::path(out(seed)) / "match.md"), HasSubstr("| lindstrom "));
+    }
+    EXPECT_EQ(found[0], found[1]) << "the truth does not depend on the seed";
+}
+
+TEST_F(Trade, match_says_what_cannot_be_reached_and_the_nearest_there_is) {
+    const Json::Value matched = json(lodbench(
+        "match", {"--triangles", "100000000", "--method", "lindstrom", "--json", "--out", out()}));
+    const Json::Value& method = matched["match"]["methods"][0];
+    EXPECT_EQ(method["outcome"], "unreachable");
+    EXPECT_GT(method["achieved"].asDouble(), 1000);
+    EXPECT_LT(method["achieved"].asDouble(), 1e6);
+    EXPECT_LE(method["knob_value"].asDouble(), 0.02);
+    EXPECT_EQ(lodbench("match", {"--error", "1", "--out", out()}).status, 2);
+    EXPECT_THAT(errors(), HasSubstr("choose another with --out"));
+}
+
+}  // namespace
+}  // namespace lodbench::test

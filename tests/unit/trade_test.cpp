@@ -1,0 +1,155 @@
+// Speed against accuracy: which points no other beats, and how much of the plane they command.
+
+#include "report/trade.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "api/error.h"
+#include "base/hash.h"
+#include "report/json.h"
+
+namespace lodbench::report {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const double kNan = std::nan("");
+
+using Points = std::vector<TradePoint>;
+
+TEST(ParetoFront, of_nothing_is_nothing_and_of_one_point_that_point) {
+    EXPECT_THAT(pareto_front(Points{}), IsEmpty());
+    EXPECT_THAT(pareto_front(Points{{3, 4}}), ElementsAre(0));
+}
+
+TEST(ParetoFront, holds_what_no_other_beats_by_rising_cost) {
+    EXPECT_THAT(pareto_front(Points{{5, 1}, {1, 5}, {3, 3}, {4, 4}, {2, 6}}), ElementsAre(1, 2, 0));
+}
+
+TEST(ParetoFront, a_tie_in_one_is_decided_by_the_other) {
+    EXPECT_THAT(pareto_front(Points{{1, 5}, {1, 4}, {2, 4}, {2, 3}}), ElementsAre(1, 3));
+}
+
+TEST(ParetoFront, equal_points_are_all_on_it_or_none) {
+    EXPECT_THAT(pareto_front(Points{{2, 2}, {1, 3}, {2, 2}, {2, 2}}), ElementsAre(1, 0, 2, 3));
+    EXPECT_THAT(pareto_front(Points{{2, 2}, {2, 2}, {1, 1}}), ElementsAre(2));
+}
+
+TEST(ParetoFront, what_was_not_measured_is_never_on_it) {
+    EXPECT_THAT(pareto_front(Points{{kNan, 1}, {1, kNan}, {0, kInfinity}, {kInfinity, 0}, {9, 9}}),
+                ElementsAre(4));
+    EXPECT_THAT(pareto_front(Points{{kInfinity, kInfinity}, {kNan, kNan}}), IsEmpty());
+}
+
+TEST(ParetoFront, of_many_points_is_what_the_definition_says) {
+    base::SplitMix64 random(5);
+    for (int round = 0; round < 200; ++round) {
+        Points points;
+        for (std::uint64_t i = 0, count = random.below(12); i < count; ++i) {
+            const auto coordinate = [&] {
+                const std::uint64_t value = random.below(9);
+                return value == 8 ? kNan : value == 7 ? kInfinity : double(value);
+            };
+            const double cost = coordinate();
+            points.push_back({cost, coordinate()});
+        }
+        std::vector<std::size_t> expected;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const TradePoint& p = points[i];
+            if (!std::isfinite(p.cost) || !std::isfinite(p.error)) continue;
+            bool beaten = false;
+            for (const TradePoint& q : points) {
+                if (!std::isfinite(q.cost) || !std::isfinite(q.error)) continue;
+                beaten = beaten || (q.cost <= p.cost && q.error <= p.error &&
+                                    (q.cost < p.cost || q.error < p.error));
+            }
+            if (!beaten) expected.push_back(i);
+        }
+        EXPECT_THAT(pareto_front(points), testing::UnorderedElementsAreArray(expected));
+    }
+}
+
+TEST(Hypervolume, of_one_point_is_its_rectangle) {
+    EXPECT_DOUBLE_EQ(hypervolume(Points{{4, 1}}, {8, 2}), 0.25);
+    EXPECT_DOUBLE_EQ(hypervolume(Points{{0, 0}}, {8, 2}), 1.0);
+    EXPECT_EQ(hypervolume(Points{}, {8, 2}), 0.0);
+}
+
+TEST(Hypervolume, of_steps_is_their_union) {
+    // (1, 3): 3 x 1, (2, 2): 2 x 1, (3, 1): 1 x 1 of 4 x 4; (3, 3) adds nothing.
+    EXPECT_DOUBLE_EQ(hypervolume(Points{{2, 2}, {3, 1}, {3, 3}, {1, 3}, {2, 2}}, {4, 4}), 6.0 / 16);
+}
+
+TEST(Hypervolume, leaves_out_what_lies_beyond_the_reference_or_was_not_measured) {
+    EXPECT_DOUBLE_EQ(
+        hypervolume(Points{{2, 2}, {5, 0}, {0, 5}, {kNan, 0}, {0, kInfinity}, {-1, 0}}, {4, 4}),
+        0.25);
+    EXPECT_THROW((void)hypervolume(Points{}, {0, 1}), ContractError);
+    EXPECT_THROW((void)hypervolume(Points{}, {1, kInfinity}), ContractError);
+}
+
+Json::Value cell(const std::string& method, double tau, int repetition, const std::string& error,
+                 double frame_ms) {
+    return parse_json(R"({"cell":"x","scenario":"s","method":")" + method +
+                          R"(","params":{"tau":)" + std::to_string(tau) + R"(},"repetition":)" +
+                          std::to_string(repetition) + R"(,"status":"ok","pixel_error_px":)" +
+                          error + R"(,"frame_ms":{"mean":)" + std::to_string(frame_ms) +
+                          R"(},"triangles":{"mean":100},"gpu_bytes":1048576,)" +
+                          R"("prepare_s":null})",
+                      "a cell");
+}
+
+TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario) {
+    std::vector<Json::Value> cells = {cell("m", 4, 0, R"({"p999":4,"max":"inf"})", 10),
+                                      cell("m", 4, 1, "null", 14), cell("m", 4, 2, "null", 12),
+                                      cell("m", 1, 0, R"({"p999":1,"max":8})", 30),
+                                      cell("n", 1, 0, R"({"p999":5,"max":6})", 20)};
+    cells.back()["status"] = "ok";
+    Json::Value failed = cell("n", 2, 0, "null", 0);
+    failed["status"] = "failed";
+    failed["reason"] = "out of luck";
+    cells.push_back(failed);
+    Json::Value elsewhere = cell("n", 1, 0, R"({"p999":50,"max":60})", 200);
+    elsewhere["scenario"] = "t";
+    cells.push_back(elsewhere);
+    const auto rows = trade_rows(cells, {{"m", "tau"}}, ErrorMetric::p999, 1);
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(rows[0].label, "m tau=1");
+    EXPECT_EQ(rows[1].label, "m tau=4");
+    EXPECT_EQ(rows[1].knob, 4.0);
+    EXPECT_EQ(rows[1].error, 4.0);
+    EXPECT_EQ(rows[1].frame_ms->centre, 12.0);
+    EXPECT_TRUE(rows[0].on_front);
+    EXPECT_TRUE(rows[1].on_front);
+    EXPECT_FALSE(rows[2].on_front) << "m at 4 is faster and better";
+    EXPECT_FALSE(rows[2].knob.has_value()) << "no knob is known of n";
+    EXPECT_FALSE(rows[3].on_front);
+    EXPECT_THAT(rows[3].failures, ElementsAre("failed (repetition 0): out of luck"));
+    EXPECT_TRUE(rows[4].on_front) << "another scenario, another front";
+    const std::string text = trade_text(rows, ErrorMetric::p999, TradePoint{40, 10});
+    EXPECT_THAT(text, HasSubstr("out of luck"));
+    // (12, 4) and (30, 1) of 40 x 10: 28 x 6 and 10 x 3.
+    EXPECT_THAT(text, HasSubstr("| m      |      0.4950 |"));
+    const auto largest = trade_rows(cells, {}, ErrorMetric::max, 1);
+    EXPECT_EQ(largest[1].error, kInfinity);
+    EXPECT_FALSE(largest[1].on_front) << "uncovered ground is no error to trade";
+}
+
+TEST(TradeRows, an_asynchronous_method_is_judged_by_what_its_pace_showed) {
+    Json::Value one = cell("m", 1, 0, R"({"p999":1})", 10);
+    one["pixel_error_realtime_px"]["p999"] = 3.5;
+    EXPECT_EQ(pixel_error(one, ErrorMetric::p999), 3.5);
+    one["pixel_error_realtime_px"] = Json::Value::null;
+    EXPECT_EQ(pixel_error(one, ErrorMetric::p999), 1.0);
+    EXPECT_EQ(pixel_error(one, ErrorMetric::rms), std::nullopt);
+}
+
+}  // namespace
+}  // namespace lodbench::report
