@@ -14,6 +14,7 @@ void add_describe(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);
 void add_sweep(CLI::App& app, int& status);
 void add_match(CLI::App& app, int& status);
+void add_economy(CLI::App& app, int& status);
 void add_cell(CLI::App& app, int& status);  ///< hidden: the child process of `run`
 void add_mesh(CLI::App& app, int& status);
 void add_terrain(CLI::App& app, int& status);

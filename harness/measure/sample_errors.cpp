@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "measure/box_in_view.h"
 #include "measure/pixel_projection.h"
 
 namespace lodbench::measure {
@@ -16,6 +17,7 @@ namespace {
 constexpr int kBlock =
     64;  // samples along the edge of a block: culled as a whole, one row of blocks a task
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSlack = 1e-9;
 
 /// The range of several displacement fields over a block; nothing covered leaves it at zero.
 HeightInterval displacement_range(std::span<const std::span<const float>> fields,
@@ -36,29 +38,14 @@ HeightInterval displacement_range(std::span<const std::span<const float>> fields
     return {low, high};
 }
 
-/// Whether a block's box may reach into the frustum: it does not lie wholly outside one plane.
-bool may_be_in_view(const ReferenceTerrain& terrain, const Camera& camera, const SampleRect& rect,
-                    const HeightInterval& displacement) {
+/// Whether a block may reach into the frustum.
+bool may_be_in_view(const ReferenceTerrain& terrain, const BoxInView& in_view,
+                    const SampleRect& rect, const HeightInterval& displacement) {
     const HeightInterval heights = terrain.range(rect);
     const glm::dvec3 south_west = terrain.sample(rect.row + rect.rows - 1, rect.column);
     const glm::dvec3 north_east = terrain.sample(rect.row, rect.column + rect.columns - 1);
-    const glm::dvec3 low =
-        glm::dvec3(glm::dvec2(south_west), heights.low + displacement.low) - camera.position;
-    const glm::dvec3 high =
-        glm::dvec3(glm::dvec2(north_east), heights.high + displacement.high) - camera.position;
-    // Rounding errs on the side of looking: a billionth of the largest coordinate.
-    double slack = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        slack = std::max({slack, std::abs(low[axis]), std::abs(high[axis])});
-    }
-    for (const glm::dvec4& plane : camera.frustum_planes()) {
-        double farthest = plane.w + 1e-9 * slack;
-        for (int axis = 0; axis < 3; ++axis) {
-            farthest += plane[axis] * (plane[axis] > 0 ? high[axis] : low[axis]);
-        }
-        if (farthest < 0) return false;
-    }
-    return true;
+    return in_view({glm::dvec2(south_west), heights.low + displacement.low},
+                   {glm::dvec2(north_east), heights.high + displacement.high});
 }
 
 /// Calls `body(partial, row, column, index, local true point)` for all samples of the blocks that
@@ -68,6 +55,7 @@ std::vector<Partial> for_samples(const ReferenceTerrain& terrain, const Camera& 
                                  std::span<const std::span<const float>> fields, const Body& body) {
     const TerrainInfo& info = terrain.info();
     const PixelProjection pixels(camera);
+    const BoxInView in_view(camera, kSlack);
     const int block_rows = (info.rows + kBlock - 1) / kBlock;
     std::vector<Partial> partials(std::size_t(block_rows), Partial{});
     tbb::parallel_for(0, block_rows, [&](int block_row) {
@@ -76,7 +64,7 @@ std::vector<Partial> for_samples(const ReferenceTerrain& terrain, const Camera& 
             const SampleRect rect{block_row * kBlock, first,
                                   std::min(kBlock, info.rows - block_row * kBlock),
                                   std::min(kBlock, info.columns - first)};
-            if (!may_be_in_view(terrain, camera, rect,
+            if (!may_be_in_view(terrain, in_view, rect,
                                 displacement_range(fields, rect, info.columns))) {
                 continue;
             }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "api/error.h"
+#include "measure/greedy_triangulation.h"
 
 namespace lodbench::measure {
 
@@ -174,6 +175,21 @@ void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixe
     worst_->map_columns = std::max(1, int(info.columns * cells));
     worst_->map_px = map_of_errors(terrain_, now_.camera, now_.displacements, worst_->map_rows,
                                    worst_->map_columns);
+}
+
+void TruthMeter::find_economy(std::uint64_t triangles) {
+    if (!now_.measured) throw ContractError("TruthMeter::find_economy: no frame was measured");
+    const std::optional<double> target = frame_screen_.summary(false).max_covered;
+    if (!target) return;
+    const GreedyTriangulation greedy = greedy_triangulation(terrain_, now_.camera, *target);
+    std::vector<float> displacements(terrain_.heights().size());
+    DrawnSurface(surface_of(greedy, terrain_, now_.camera), terrain_.info())
+        .displacements(terrain_.heights(), displacements);
+    ErrorPool all, visible;
+    const SampleErrors errors =
+        measure_samples(terrain_, now_.camera, displacements, kInfinity, all, visible);
+    total_.economy.push_back({now_.frame, *target, triangles, greedy.minimal(), greedy.in_view,
+                              greedy.full_in_view, std::max(errors.worst.px, 0.0)});
 }
 
 void TruthMeter::measure_realtime(int frame, const Camera& camera, CapturedSurface&& surface,

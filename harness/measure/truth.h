@@ -46,6 +46,17 @@ struct WorstPlace {
     int frame = 0, row = 0, column = 0;
 };
 
+/// A frame's triangles beside those that would have done; see greedy_triangulation.h.
+struct Economy {
+    int frame = 0;
+    double target_px = 0;         ///< the frame's greatest screen error, uncovered samples apart
+    std::uint64_t triangles = 0;  ///< that the method drew, with an area
+    std::uint64_t minimal = 0;    ///< of greedy and full the fewer
+    std::uint64_t greedy = 0;     ///< that reach into the frustum
+    std::uint64_t full = 0;       ///< of the full grid that reach into the frustum
+    double greedy_px = 0;  ///< screen error of the greedy triangulation, measured like a method's
+};
+
 /// Over all measured frames. Counts are totals unless they say otherwise.
 struct TruthSummary {
     int frames = 0;
@@ -68,6 +79,7 @@ struct TruthSummary {
     std::optional<double> bound_honesty;   ///< greatest screen error / claimed bound
     std::optional<ErrorSummary> pixel_realtime;
     std::optional<WorstPlace> pixel_realtime_worst;
+    std::vector<Economy> economy;
 };
 
 class TruthMeter {
@@ -86,6 +98,10 @@ public:
     [[nodiscard]] FrameTruth measure(std::span<const float> depth,
                                      std::vector<std::uint8_t> drawn_rgb,
                                      std::vector<std::uint8_t> reference_rgb);
+
+    /// Of the frame that was measured last, of which the method drew `triangles` with an area.
+    /// Takes seconds. Nothing where no sample in view is covered.
+    void find_economy(std::uint64_t triangles);
 
     /// The same frame as the real-time replay drew it.
     void measure_realtime(int frame, const Camera& camera, CapturedSurface&& surface,

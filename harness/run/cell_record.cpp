@@ -127,6 +127,10 @@ std::string write_spec(const CellSpec& spec) {
     Json::Value& overrides = json["overrides"] = Json::objectValue;
     if (spec.overrides.frames) overrides["frames"] = *spec.overrides.frames;
     if (spec.overrides.truth) overrides["truth"] = *spec.overrides.truth;
+    if (spec.overrides.economy) {
+        Json::Value& frames = overrides["economy"] = Json::arrayValue;
+        for (const int frame : *spec.overrides.economy) frames.append(frame);
+    }
     if (spec.overrides.seed) overrides["seed"] = Json::UInt64(*spec.overrides.seed);
     if (spec.overrides.repetitions) overrides["repetitions"] = *spec.overrides.repetitions;
     if (spec.overrides.viewport) {
@@ -159,6 +163,10 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         const Json::Value& overrides = json["overrides"];
         if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
         if (overrides.isMember("truth")) spec.overrides.truth = overrides["truth"].asBool();
+        if (overrides.isMember("economy")) {
+            auto& frames = spec.overrides.economy.emplace();
+            for (const Json::Value& frame : overrides["economy"]) frames.push_back(frame.asInt());
+        }
         if (overrides.isMember("seed")) spec.overrides.seed = overrides["seed"].asUInt64();
         if (overrides.isMember("repetitions"))
             spec.overrides.repetitions = overrides["repetitions"].asInt();

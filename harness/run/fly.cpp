@@ -293,12 +293,17 @@ void Flight::fly_in_lockstep() {
 /// Every n-th frame, and for popping the frame after it.
 void Flight::measure_frame(int frame) {
     const int every = scenario_.measure.every;
-    const bool measured = frame % every == 0;
+    const bool economy = measures_truth() && std::ranges::find(scenario_.measure.economy, frame) !=
+                                                 scenario_.measure.economy.end();
+    const bool measured = frame % every == 0 || economy;
     const bool successor = measures_truth() && frame > 0 && (frame - 1) % every == 0;
     if (!measured && !successor) return;
     FrameRecord* const before = successor ? &result_.frames[std::size_t(frame - 1)] : nullptr;
     measurer_->take(frame, result_.frames[std::size_t(frame)], before);
     if (measured) measurer_->measure(result_.frames[std::size_t(frame)]);
+    if (!economy) return;
+    signs_.enter(Call::none);  // it takes seconds, and none of them are the method's
+    measurer_->find_economy();
 }
 
 /// A method as fresh as in the timing replay: what the lockstep replay loaded and settled would

@@ -52,6 +52,10 @@ void FrameMeasurer::measure(FrameRecord& record) {
     record.truth = meter_->measure(depth, std::move(drawn), stage_->read_color());
 }
 
+void FrameMeasurer::find_economy() {
+    if (meter_) meter_->find_economy(nondegenerate_);
+}
+
 void FrameMeasurer::measure_realtime(int frame) {
     if (!meter_) return;
     measure::CapturedSurface surface = capture();

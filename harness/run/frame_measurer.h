@@ -30,6 +30,8 @@ public:
     /// Measures the frame that was taken last into its record: the non-degenerate triangles, and
     /// the truth.
     void measure(FrameRecord& record);
+    /// Of the frame that was measured last, how few triangles would have done.
+    void find_economy();
     /// The frozen selection as the real-time replay has it.
     void measure_realtime(int frame);
 

@@ -134,7 +134,7 @@ std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scena
 bool RunRequest::names_cells() const {
     return !scenarios.empty() || !methods.empty() || !settings.empty() || !plugin_dirs.empty() ||
            !device.empty() || overrides.frames || overrides.viewport || overrides.seed ||
-           overrides.repetitions || overrides.truth;
+           overrides.repetitions || overrides.truth || overrides.economy;
 }
 
 void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {

@@ -11,6 +11,8 @@
 #include <glm/vec4.hpp>
 #include <span>
 
+#include "measure/box_in_view.h"
+
 namespace lodbench::run {
 
 namespace {
@@ -67,19 +69,9 @@ std::vector<std::uint16_t> block_indices() {
     return indices;
 }
 
-/// False only where a box, in double, lies wholly outside one plane of the frustum. The slack of a
-/// millionth of the distance covers the picture's own float arithmetic (a handful of roundings of
-/// 6e-8), so that nothing that reaches a pixel is left out.
-bool may_see(const std::array<glm::dvec4, 5>& planes, const glm::dvec3& eye, const glm::dvec3& low,
-             const glm::dvec3& high) {
-    const glm::dvec3 centre = (low + high) * 0.5 - eye;
-    const glm::dvec3 half = (high - low) * 0.5;
-    const double slack = 1e-6 * (glm::length(centre) + glm::length(half));
-    return std::ranges::all_of(planes, [&](const glm::dvec4& plane) {
-        const glm::dvec3 normal(plane);
-        return glm::dot(normal, centre) + glm::dot(glm::abs(normal), half) + plane.w >= -slack;
-    });
-}
+/// Covers the picture's own float arithmetic (a handful of roundings of 6e-8), so that nothing that
+/// reaches a pixel is left out.
+constexpr double kSlack = 1e-6;
 
 }  // namespace
 
@@ -130,7 +122,7 @@ void ReferencePicture::find_height_ranges() {
 
 std::vector<glm::ivec2> ReferencePicture::visible_blocks(const Camera& camera) const {
     const TerrainInfo& info = terrain_->info();
-    const auto planes = camera.frustum_planes();
+    const measure::BoxInView in_view(camera, kSlack);
     std::vector<glm::ivec2> visible;
     for (std::size_t i = 0; i < height_ranges_.size(); ++i) {
         const int column = int(i % std::size_t(block_columns_)) * kBlockCells;
@@ -140,7 +132,7 @@ std::vector<glm::ivec2> ReferencePicture::visible_blocks(const Camera& camera) c
             info.position(std::min(row + kBlockCells, info.rows - 1),
                           std::min(column + kBlockCells, info.columns - 1));
         const HeightRange& range = height_ranges_[i];
-        if (may_see(planes, camera.position, {north_west.x, south_east.y, range.low},
+        if (in_view({north_west.x, south_east.y, range.low},
                     {south_east.x, north_west.y, range.high})) {
             visible.emplace_back(column, row);
         }

@@ -11,12 +11,23 @@ namespace {
 using report::number;
 using report::number_or_inf;
 
-constexpr std::array kFields = {"truth_frames",   "screen_error_px",         "visible_error_px",
-                                "pixel_error_px", "pixel_error_realtime_px", "crack_pixels",
-                                "skirt_pixels",   "uncovered_samples",       "silhouette_px",
-                                "popping_px",     "height_rmse_m",           "image",
-                                "bound_honesty",  "clipped_segments",        "unjudged_pixels",
-                                "wall_triangles"};
+constexpr std::array kFields = {"truth_frames",
+                                "screen_error_px",
+                                "visible_error_px",
+                                "pixel_error_px",
+                                "pixel_error_realtime_px",
+                                "crack_pixels",
+                                "skirt_pixels",
+                                "uncovered_samples",
+                                "silhouette_px",
+                                "popping_px",
+                                "height_rmse_m",
+                                "image",
+                                "bound_honesty",
+                                "clipped_segments",
+                                "unjudged_pixels",
+                                "wall_triangles",
+                                "economy"};
 
 Json::Value count(std::uint64_t value) {
     return Json::UInt64(value);
@@ -71,6 +82,21 @@ Json::Value truth_record(const measure::TruthSummary& truth) {
                                : Json::Value::null;
     json["skirt_pixels"] = total_and_max(truth.skirt_total, truth.skirt_max);
     json["uncovered_samples"] = count(truth.screen.uncovered);
+    if (!truth.economy.empty()) json["economy"] = Json::arrayValue;
+    for (const measure::Economy& frame : truth.economy) {
+        Json::Value figures;
+        figures["frame"] = frame.frame;
+        figures["target_px"] = number(frame.target_px);
+        figures["triangles"] = count(frame.triangles);
+        figures["minimal_triangles"] = count(frame.minimal);
+        figures["greedy_triangles"] = count(frame.greedy);
+        figures["full_triangles"] = count(frame.full);
+        figures["greedy_px"] = number_or_inf(frame.greedy_px);
+        figures["ratio"] = frame.minimal > 0
+                               ? number(double(frame.triangles) / double(frame.minimal))
+                               : Json::Value::null;
+        json["economy"].append(figures);
+    }
     Json::Value& silhouette = json["silhouette_px"];
     silhouette["max"] = number(truth.silhouette_max);
     silhouette["mean"] = number(truth.silhouette_mean);

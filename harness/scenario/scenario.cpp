@@ -149,11 +149,15 @@ void read_measure_and_run(Section& top, Scenario& scenario) {
     if (auto measure = top.section("measure")) {
         set(scenario.measure.every, measure->integer("every", 1, kMaxFrames));
         set(scenario.measure.truth, measure->boolean("truth"));
-        if (auto shots = measure->integers("shots", 0, scenario.frames - 1)) {
-            std::sort(shots->begin(), shots->end());
-            shots->erase(std::unique(shots->begin(), shots->end()), shots->end());
-            scenario.measure.shots = std::move(*shots);
-        }
+        const auto frames = [&](const char* key, std::vector<int>& list) {
+            auto given = measure->integers(key, 0, scenario.frames - 1);
+            if (!given) return;
+            std::ranges::sort(*given);
+            given->erase(std::ranges::unique(*given).begin(), given->end());
+            list = std::move(*given);
+        };
+        frames("shots", scenario.measure.shots);
+        frames("economy", scenario.measure.economy);
         set(scenario.measure.budget_ms, measure->number("budget_ms", {0, 1e6}));
         measure->refuse_unknown();
     }
@@ -281,7 +285,9 @@ void apply(const Overrides& overrides, Scenario& scenario) {
     if (overrides.frames) {
         require("--frames", *overrides.frames, kMaxFrames);
         scenario.frames = *overrides.frames;
-        std::erase_if(scenario.measure.shots, [&](int shot) { return shot >= scenario.frames; });
+        for (auto* frames : {&scenario.measure.shots, &scenario.measure.economy}) {
+            std::erase_if(*frames, [&](int frame) { return frame >= scenario.frames; });
+        }
     }
     if (overrides.viewport) {
         require("--size: width", overrides.viewport->width, kMaxPixels);
@@ -290,6 +296,14 @@ void apply(const Overrides& overrides, Scenario& scenario) {
     }
     if (overrides.seed) scenario.seed = *overrides.seed;
     if (overrides.truth) scenario.measure.truth = *overrides.truth;
+    if (overrides.economy) {
+        for (const int frame : *overrides.economy) {
+            if (frame >= 0 && frame < scenario.frames) continue;
+            throw InputError(fmt::format("--frame {}: the flight has the frames 0 to {}", frame,
+                                         scenario.frames - 1));
+        }
+        scenario.measure.economy = *overrides.economy;
+    }
     if (overrides.repetitions) {
         require("--repeat", *overrides.repetitions, kMaxRepetitions);
         scenario.repetitions = *overrides.repetitions;

@@ -29,6 +29,7 @@ struct MeasureOptions {
     bool truth = true;  ///< measure what those frames really show: errors, cracks, popping
     std::vector<int>
         shots;  ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
+    std::vector<int> economy;  ///< frames compared with a near-minimal triangulation
     double budget_ms = 16.67;  ///< for the jank sum
 };
 
@@ -59,6 +60,7 @@ struct Overrides {
     std::optional<std::uint64_t> seed = {};
     std::optional<int> repetitions = {};
     std::optional<bool> truth = {};
+    std::optional<std::vector<int>> economy = {};
 };
 
 /// Parses a scenario. Relative files in it are relative to the scenario's folder. Caps file size (1

@@ -141,5 +141,32 @@ TEST_F(Trade, match_says_what_cannot_be_reached_and_the_nearest_there_is) {
     EXPECT_THAT(errors(), HasSubstr("choose another with --out"));
 }
 
+TEST_F(Trade, economy_compares_a_frame_with_what_would_do_at_the_same_error) {
+    const Json::Value flown =
+        json(lodbench("economy", {"--frame", "1", "--frame", "3", "--method", "lindstrom",
+                                  "--method", "full-grid", "--json", "--out", out()}));
+    ASSERT_EQ(flown["cells"].size(), 2U);
+    for (const Json::Value& cell : flown["cells"]) {
+        ASSERT_EQ(cell["economy"].size(), 2U) << cell["method"];
+        // Frames 0 and 2 by `every`, 1 and 3 because they are named.
+        EXPECT_EQ(cell["truth_frames"].asInt(), 4);
+        for (const Json::ArrayIndex i : {0U, 1U}) {
+            const Json::Value& frame = cell["economy"][i];
+            EXPECT_EQ(frame["frame"].asInt(), i == 0 ? 1 : 3);
+            EXPECT_LE(frame["greedy_px"].asDouble(), frame["target_px"].asDouble() + 2e-3);
+            EXPECT_LE(frame["minimal_triangles"].asUInt64(), frame["full_triangles"].asUInt64());
+            EXPECT_GE(frame["triangles"].asUInt64(), frame["minimal_triangles"].asUInt64());
+            EXPECT_NEAR(frame["ratio"].asDouble() * frame["minimal_triangles"].asDouble(),
+                        frame["triangles"].asDouble(), 1e-3);
+        }
+        if (cell["method"] == "full-grid") {
+            EXPECT_EQ(cell["economy"][0]["triangles"].asUInt64(), 2U * 128 * 128);
+        }
+    }
+    EXPECT_THAT(text_of(fs::path(out()) / "economy.md"), HasSubstr("| lindstrom "));
+    EXPECT_EQ(lodbench("economy", {"--frame", "4", "--out", out("other")}).status, 2);
+    EXPECT_THAT(errors(), HasSubstr("--frame 4: the flight has the frames 0 to 3"));
+}
+
 }  // namespace
 }  // namespace lodbench::test

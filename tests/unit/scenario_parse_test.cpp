@@ -106,6 +106,7 @@ heading = 10
 [measure]
 every = 5
 shots = [29, 0, 29]
+economy = [5, 5]
 budget_ms = 8
 [run]
 repetitions = 7
@@ -149,6 +150,7 @@ order = "bfs"
     EXPECT_EQ(scenario.path.keyframes[0].roll, 5);
     EXPECT_EQ(scenario.measure.every, 5);
     EXPECT_THAT(scenario.measure.shots, ElementsAre(0, 29));
+    EXPECT_THAT(scenario.measure.economy, ElementsAre(5));
     EXPECT_EQ(scenario.measure.budget_ms, 8);
     EXPECT_EQ(scenario.repetitions, 7);
     EXPECT_EQ(scenario.seed, 77U);
@@ -157,7 +159,7 @@ order = "bfs"
     EXPECT_EQ(scenario.memory_limit_bytes, 512ULL << 20U);
     ASSERT_EQ(scenario.methods.size(), 2U);
     EXPECT_EQ(scenario.methods[0].id, "pgm");
-    EXPECT_EQ(scenario.methods[0].where, "flights/least.toml:44");
+    EXPECT_EQ(scenario.methods[0].where, "flights/least.toml:45");
     const auto& settings = scenario.methods[1].settings;
     // In alphabetical order, as TOML tables are kept.
     EXPECT_THAT(settings, ElementsAre(Pair("order", ElementsAre("bfs")),

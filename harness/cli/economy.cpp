@@ -1,0 +1,94 @@
+// lodbench economy: how many triangles methods draw, and how few would do.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "api/error.h"
+#include "cli/campaign_options.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "report/cell_groups.h"
+#include "report/json.h"
+#include "report/results.h"
+#include "run/locations.h"
+
+namespace lodbench::cli {
+
+namespace {
+
+struct Options : CampaignOptions {
+    std::vector<int> frames;
+};
+
+std::string px(const Json::Value& value) {
+    const auto number = report::read_number_or_inf(value);
+    return number ? fmt::format("{:.4g}", *number) : "-";
+}
+
+std::string economy_text(const std::vector<Json::Value>& cells) {
+    std::string text;
+    std::string failures;
+    std::string scenario;
+    for (const report::CellGroup& group : report::group_cells(cells)) {
+        if (group.scenario != scenario) {
+            scenario = group.scenario;
+            text += fmt::format("{}## {}\n\n", text.empty() ? "" : "\n", scenario);
+            text += fmt::format("| {:<28} | {:>6} | {:>9} | {:>10} | {:>10} | {:>10} | {:>7} |\n",
+                                "method", "frame", "max px", "triangles", "would do", "full grid",
+                                "ratio");
+            text += fmt::format("|{:-<30}|{:->7}:|{:->10}:|{:->11}:|{:->11}:|{:->11}:|{:->8}:|\n",
+                                "", "", "", "", "", "", "");
+        }
+        for (const std::string& failure : group.failures) {
+            failures += fmt::format("- {}, {}: {}\n", group.label, group.scenario, failure);
+        }
+        for (const Json::Value* cell : group.good) {
+            for (const Json::Value& frame : (*cell)["economy"]) {
+                text += fmt::format(
+                    "| {:<28} | {:>6} | {:>9} | {:>10} | {:>10} | {:>10} | {:>7} |\n", group.label,
+                    frame["frame"].asInt(), px(frame["target_px"]), frame["triangles"].asUInt64(),
+                    frame["minimal_triangles"].asUInt64(), frame["full_triangles"].asUInt64(),
+                    frame["ratio"].isNumeric() ? fmt::format("{:.2f}", frame["ratio"].asDouble())
+                                               : "-");
+            }
+        }
+    }
+    return text + (failures.empty() ? "" : "\n" + failures);
+}
+
+int economy(Options& options) {
+    run::RunRequest& request = options.request;
+    request.overrides.economy = options.frames;
+    if (!request.overrides.repetitions) request.overrides.repetitions = 1;
+    options.finish();
+    Progress progress;
+    const run::CampaignOutcome outcome = run_campaign(request, run::executable_path(), progress);
+    const std::string text = economy_text(outcome.cells);
+    report::write_whole(outcome.out / "economy.md", "# lodbench economy\n\n" + text);
+    if (options.json) {
+        fmt::print("{}\n", report::to_text(to_json(outcome)));
+    } else {
+        fmt::print("\n{}\nresults   {}\n", text, outcome.out.string());
+    }
+    if (!outcome.error.empty()) fmt::print(stderr, "lodbench: {}\n", outcome.error);
+    return outcome.exit_status();
+}
+
+}  // namespace
+
+void add_economy(CLI::App& app, int& status) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "economy",
+        "Compares the triangles that methods draw in a frame with a near-minimal triangulation of "
+        "the same error.");
+    command->add_option("SCENARIO", options->request.scenarios,
+                        "scenario files; none: the demo over Puget Sound");
+    add_repeated(*command, "--frame", options->frames, "frame to compare")->required();
+    options->add_to(*command);
+    command->callback([options, &status] { status = economy(*options); });
+}
+
+}  // namespace lodbench::cli

@@ -1,0 +1,131 @@
+// How few triangles would do: the oracle keeps its own target, seen by the measuring code, and
+// never needs more than the full grid.
+
+#include "measure/greedy_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "api/error.h"
+#include "measure/drawn_surface.h"
+#include "measure/sample_errors.h"
+#include "terrain/height_field.h"
+
+namespace lodbench::measure {
+namespace {
+
+std::unique_ptr<terrain::HeightField> form(const std::string& name, int rows, int columns) {
+    terrain::TerrainSource source;
+    source.synthetic = name;
+    source.rows = rows;
+    source.columns = columns;
+    source.spacing_x = 10;
+    source.spacing_y = 12;
+    return terrain::load_terrain(source);
+}
+
+Camera camera_over(const TerrainInfo& info, double heading, double pitch, double height) {
+    const double degree = std::numbers::pi / 180;
+    Camera camera;
+    camera.viewport = {320, 240};
+    const glm::dvec2 middle = 0.5 * (info.extent_min() + info.extent_max());
+    camera.position = {middle, info.max_height + height};
+    camera.orientation = Camera::look({std::sin(heading * degree) * std::cos(pitch * degree),
+                                       std::cos(heading * degree) * std::cos(pitch * degree),
+                                       std::sin(pitch * degree)});
+    return camera;
+}
+
+/// As the harness measures any method.
+double measured(const GreedyTriangulation& greedy, const ReferenceTerrain& terrain,
+                const Camera& camera) {
+    std::vector<float> displacements(terrain.heights().size());
+    DrawnSurface(surface_of(greedy, terrain, camera), terrain.info())
+        .displacements(terrain.heights(), displacements);
+    ErrorPool all, visible;
+    return measure_samples(terrain, camera, displacements, 1, all, visible).worst.px;
+}
+
+TEST(GreedyTriangulation,
+     keeps_its_target_as_measured_like_a_method_and_needs_no_more_than_the_full_grid) {
+    for (const auto& [name, rows, columns] : {std::tuple{"ridged", 129, 129},
+                                              {"ridged", 65, 200},
+                                              {"step", 90, 70},
+                                              {"bump", 65, 65}}) {
+        const auto field = form(name, rows, columns);
+        const ReferenceTerrain terrain(field->samples(), field->info());
+        for (const double pitch : {-90.0, -30.0, -3.0}) {
+            const Camera camera = camera_over(field->info(), 40, pitch, 150);
+            std::size_t fewest = 0;
+            for (const double target : {0.0, 0.1, 1.0, 8.0}) {
+                const GreedyTriangulation greedy = greedy_triangulation(terrain, camera, target);
+                // Vertices are rounded to float, relative to the eye.
+                EXPECT_LE(measured(greedy, terrain, camera), target + 2e-3);
+                EXPECT_LE(greedy.max_px, target);
+                EXPECT_NEAR(greedy.max_px, measured(greedy, terrain, camera), 2e-3);
+                EXPECT_LE(greedy.minimal(), greedy.full_in_view);
+                EXPECT_TRUE(target == 0 || greedy.triangles.size() <= fewest);
+                fewest = greedy.triangles.size();
+            }
+        }
+    }
+}
+
+TEST(GreedyTriangulation, of_a_plane_is_two_triangles) {
+    for (const char* name : {"plane", "ramp"}) {
+        const auto field = form(name, 65, 65);
+        const ReferenceTerrain terrain(field->samples(), field->info());
+        // A ramp's heights are rounded to float.
+        const auto greedy =
+            greedy_triangulation(terrain, camera_over(field->info(), 0, -60, 100), 1e-3);
+        EXPECT_EQ(greedy.triangles.size(), 2U);
+        EXPECT_EQ(greedy.minimal(), 2U);
+    }
+}
+
+TEST(GreedyTriangulation, one_raised_sample_takes_its_neighbours_and_no_more) {
+    TerrainInfo info;
+    info.name = "peak";
+    info.rows = info.columns = 65;
+    info.spacing = {10, 10};
+    std::vector<float> heights(65 * 65, 0.0F);
+    heights[32 * 65 + 20] = 40;
+    const terrain::HeightField field(info, heights);
+    const ReferenceTerrain terrain(field.samples(), field.info());
+    const auto greedy = greedy_triangulation(terrain, camera_over(field.info(), 0, -90, 600), 0.01);
+    EXPECT_LE(greedy.vertices.size(), 4U + 1 + 8 + 8);
+    EXPECT_GE(greedy.vertices.size(), 4U + 1 + 6);
+}
+
+TEST(GreedyTriangulation, asks_nothing_where_the_camera_does_not_look) {
+    const auto field = form("ridged", 129, 129);
+    const ReferenceTerrain terrain(field->samples(), field->info());
+    Camera camera = camera_over(field->info(), 0, 80, 100);
+    const auto away = greedy_triangulation(terrain, camera, 0.01);
+    EXPECT_EQ(away.triangles.size(), 2U);
+    EXPECT_EQ(away.full_in_view, 0U);
+    // Half of the view, fewer vertices.
+    camera = camera_over(field->info(), 0, -20, 100);
+    const auto wide = greedy_triangulation(terrain, camera, 0.5);
+    camera.vertical_fov /= 4;
+    camera.viewport.height /= 4;
+    const auto narrow = greedy_triangulation(terrain, camera, 0.5);
+    EXPECT_LT(narrow.vertices.size(), wide.vertices.size());
+}
+
+TEST(GreedyTriangulation, is_the_same_each_time_and_refuses_what_is_no_target) {
+    const auto field = form("ridged", 65, 65);
+    const ReferenceTerrain terrain(field->samples(), field->info());
+    const Camera camera = camera_over(field->info(), 10, -30, 80);
+    const auto one = greedy_triangulation(terrain, camera, 0.3);
+    const auto two = greedy_triangulation(terrain, camera, 0.3);
+    EXPECT_EQ(one.triangles, two.triangles);
+    EXPECT_EQ(one.vertices, two.vertices);
+    EXPECT_THROW((void)greedy_triangulation(terrain, camera, -1), ContractError);
+    EXPECT_THROW((void)greedy_triangulation(terrain, camera, std::nan("")), ContractError);
+}
+
+}  // namespace
+}  // namespace lodbench::measure
