@@ -60,7 +60,7 @@ void measure_frames(const Options& options, int size) {
     const double before = memory_bytes("VmRSS");
     forget_peak();
 
-    run::FrameMeasurer measurer(stage, 1.0, true);
+    run::FrameMeasurer measurer(stage, 1.0, terrain);
     std::vector<double> taken, measured;
     run::FrameRecord last;
     for (int frame = 0; frame < options.repetitions + 1; ++frame) {

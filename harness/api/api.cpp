@@ -21,7 +21,6 @@ void Terrain::read(const SampleRect& rect, std::span<float> heights) const {
                                         count, heights.size()));
     }
     copy_samples(rect, heights);
-    samples_served_ += count;
 }
 
 TilePyramid::TilePyramid(int rows, int columns) : rows_(rows), columns_(columns) {
@@ -59,8 +58,6 @@ void Terrain::read_tile(const TileId& tile, std::span<float> heights) const {
                         kTileSampleCount, heights.size()));
     }
     copy_tile(tile, heights);
-    samples_served_ += kTileSampleCount;
-    ++tiles_served_;
 }
 
 TileSummary Terrain::tile_summary(const TileId& tile) const {

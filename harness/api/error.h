@@ -21,6 +21,12 @@ struct UnsupportedError : EnvironmentError {
     using EnvironmentError::EnvironmentError;
 };
 
+/// A terrain's file failed while it was read: names the file and the tile. Ends the cell that flew
+/// over it, not the others.
+struct TerrainError : EnvironmentError {
+    using EnvironmentError::EnvironmentError;
+};
+
 /// A programmer's mistake, a plugin author's included: says what was expected.
 struct ContractError : std::logic_error {
     using std::logic_error::logic_error;

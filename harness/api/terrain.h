@@ -3,7 +3,6 @@
 // the full resolution or by tiles of a pyramid.
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -101,8 +100,8 @@ struct TileSummary {
     float midpoint_error = 0;
 };
 
-/// Serves samples and counts what was asked for. Every height is finite. All members may be called
-/// from several threads at once.
+/// Serves samples. Every height is finite. All members may be called from several threads at once.
+/// What a method asks for is counted where it asks; a terrain itself does not know who does.
 class Terrain {
 public:
     virtual ~Terrain() = default;
@@ -112,25 +111,25 @@ public:
     [[nodiscard]] const TerrainInfo& info() const { return info_; }
 
     /// Copies the rectangle into `heights`, row by row, rect.rows * rect.columns floats in metres.
-    /// Throws ContractError when the rectangle leaves the grid or the span has another size.
+    /// Throws ContractError when the rectangle leaves the grid or the span has another size,
+    /// TerrainError as `read_tile` does.
     void read(const SampleRect& rect, std::span<float> heights) const;
 
     [[nodiscard]] TilePyramid tiles() const { return {info_.rows, info_.columns}; }
 
     /// Copies a tile's 65 x 65 samples into `heights`, row by row from the north. Beyond the grid
     /// the nearest sample is repeated; the shared shaders cut off what is drawn there. Throws
-    /// ContractError for a tile that does not exist or a span of another size, EnvironmentError,
-    /// which names the tile, where the disk fails or what it gives is damaged.
+    /// ContractError for a tile that does not exist or a span of another size, TerrainError, which
+    /// names the tile, where the disk fails or what it gives is damaged.
     void read_tile(const TileId& tile, std::span<float> heights) const;
 
     /// Without reading the tile, where the terrain was stored; else the first call finds the
     /// summaries of all tiles. Throws ContractError for a tile that does not exist.
     [[nodiscard]] TileSummary tile_summary(const TileId& tile) const;
 
-    /// Samples that `read` and `read_tile` have delivered so far.
-    [[nodiscard]] std::uint64_t samples_served() const { return samples_served_.load(); }
-    /// Of them, tiles that `read_tile` has delivered.
-    [[nodiscard]] std::uint64_t tiles_served() const { return tiles_served_.load(); }
+    /// Bytes of tiles read from a file so far to serve what was asked for; 0 for a terrain in
+    /// memory.
+    [[nodiscard]] virtual std::uint64_t bytes_read() const { return 0; }
 
 protected:
     Terrain() = default;
@@ -141,8 +140,6 @@ private:
     virtual void copy_tile(const TileId& tile, std::span<float> heights) const = 0;
     [[nodiscard]] virtual TileSummary find_summary(const TileId& tile) const = 0;
     void require(const TileId& tile, const char* caller) const;
-    mutable std::atomic<std::uint64_t> samples_served_{0};
-    mutable std::atomic<std::uint64_t> tiles_served_{0};
 };
 
 }  // namespace lodbench

@@ -18,6 +18,7 @@
 #include "run/mesh_export.h"
 #include "run/stage.h"
 #include "scenario/scenario.h"
+#include "terrain/open_terrain.h"
 
 namespace lodbench::cli {
 
@@ -88,8 +89,7 @@ std::string text_of(const ParamValue& value) {
 /// file. Returns what is to be printed.
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
                         const run::MethodInfo& method, const run::Settings& settings) {
-    const std::shared_ptr<const terrain::HeightField> terrain =
-        terrain::load_terrain(scenario.terrain);
+    const std::shared_ptr<const Terrain> terrain = terrain::open_terrain(scenario.terrain);
     const auto path =
         scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
     run::VitalSigns signs;

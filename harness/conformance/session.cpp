@@ -65,7 +65,7 @@ std::vector<Camera> random_flight(Random& random, const TerrainInfo& terrain, in
     return flight;
 }
 
-std::vector<NamedCamera> hard_cameras(const terrain::HeightField& terrain) {
+std::vector<NamedCamera> hard_cameras(const Terrain& terrain) {
     const TerrainInfo& info = terrain.info();
     const glm::dvec2 middle = 0.5 * (info.extent_min() + info.extent_max());
     const glm::dvec2 size = info.extent_max() - info.extent_min();

@@ -56,7 +56,7 @@ struct NamedCamera {
 };
 /// Level, straight down, upward, rolled, on the ground, under it, far outside, at a corner, at a
 /// sample.
-[[nodiscard]] std::vector<NamedCamera> hard_cameras(const terrain::HeightField& terrain);
+[[nodiscard]] std::vector<NamedCamera> hard_cameras(const Terrain& terrain);
 
 /// A stage that was prepared, uploaded and sized, and the few steps that the checks are made of.
 class Session {

@@ -83,7 +83,8 @@ void require_covered(Session& session, const Camera& camera, const std::string& 
         coverage.add(glm::dvec2(triangles[i]), glm::dvec2(triangles[i + 1]),
                      glm::dvec2(triangles[i + 2]));
     }
-    const std::span<const float> heights = session.stage().terrain().samples();
+    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
+    session.stage().terrain().read({0, 0, info.rows, info.columns}, heights);
     int in_view = 0, uncovered = 0, first_row = 0, first_column = 0;
     for (int row = 0; row < info.rows; ++row) {
         for (int column = 0; column < info.columns; ++column) {

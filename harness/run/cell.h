@@ -61,7 +61,9 @@ struct CellResult {
     std::vector<FrameRecord> frames;
     double prepare_s = 0, prepare_cpu_s = 0, upload_s = 0;
     std::optional<std::uint64_t> gpu_bytes, peak_rss_bytes;
-    std::uint64_t samples_served = 0;
+    /// What the method asked of the terrain, and what was read from disk for it, when the timing
+    /// replay ended.
+    std::uint64_t samples_served = 0, tiles_served = 0, terrain_bytes_read = 0;
     Counters counters;       ///< means over the frames of the lockstep replay
     std::string depth_hash;  ///< at the randomly chosen frame, lockstep
     std::string terrain_name, terrain_checksum;

@@ -199,6 +199,8 @@ std::string write_result(const CellResult& result) {
     json["gpu_bytes"] = count(result.gpu_bytes);
     json["peak_rss_bytes"] = count(result.peak_rss_bytes);
     json["samples_served"] = Json::UInt64(result.samples_served);
+    json["tiles_served"] = Json::UInt64(result.tiles_served);
+    json["terrain_bytes_read"] = Json::UInt64(result.terrain_bytes_read);
     json["counters"] = Json::arrayValue;
     for (const auto& [name, value] : result.counters) {
         Json::Value pair = Json::arrayValue;
@@ -246,6 +248,8 @@ CellResult read_result(std::string_view text, const std::string& where) {
         result.gpu_bytes = read_count(json["gpu_bytes"]);
         result.peak_rss_bytes = read_count(json["peak_rss_bytes"]);
         result.samples_served = json["samples_served"].asUInt64();
+        result.tiles_served = json["tiles_served"].asUInt64();
+        result.terrain_bytes_read = json["terrain_bytes_read"].asUInt64();
         for (const Json::Value& pair : report::get_array(json, "counters", where)) {
             // A figure that is not finite has no number in JSON.
             result.counters.emplace_back(pair[0].asString(),
@@ -316,8 +320,12 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["prepare_cpu_s"] = measured ? number(result.prepare_cpu_s) : Json::Value::null;
     json["prepare_cached"] = measured ? Json::Value(false) : Json::Value::null;
     json["upload_s"] = measured ? number(result.upload_s) : Json::Value::null;
-    json["samples_served"] =
-        measured ? Json::Value(Json::UInt64(result.samples_served)) : Json::Value::null;
+    const auto served = [&](std::uint64_t value) {
+        return measured ? Json::Value(Json::UInt64(value)) : Json::Value::null;
+    };
+    json["samples_served"] = served(result.samples_served);
+    json["tiles_served"] = served(result.tiles_served);
+    json["terrain_bytes_read"] = served(result.terrain_bytes_read);
     json["gpu_bytes"] = count(result.gpu_bytes);
     json["peak_rss_bytes"] = count(result.peak_rss_bytes);
     json["counters"] = Json::objectValue;

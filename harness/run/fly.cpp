@@ -21,6 +21,7 @@
 #include "run/stage.h"
 #include "run/timing.h"
 #include "scenario/scenario.h"
+#include "terrain/open_terrain.h"
 #include "terrain/toml_file.h"
 
 namespace lodbench::run {
@@ -73,6 +74,9 @@ public:
         fly_for_time();
         // The method's own: what measuring needs comes later.
         result_.peak_rss_bytes = peak_rss_bytes();
+        result_.samples_served = stage_->served().samples_served();
+        result_.tiles_served = stage_->served().tiles_served();
+        result_.terrain_bytes_read = stage_->served().bytes_read();
         fly_in_lockstep();
         if (measures_realtime()) fly_in_real_time();
         measurer_->finish(result_);
@@ -133,7 +137,8 @@ private:
     VitalSigns& signs_;
     CellResult& result_;
     scenario::Scenario scenario_;
-    std::shared_ptr<const terrain::HeightField> terrain_;
+    std::shared_ptr<const Terrain> terrain_;          ///< what the harness reads
+    std::shared_ptr<const Terrain> methods_terrain_;  ///< the same; its reading is the method's own
     std::unique_ptr<scenario::FlightPath> path_;
     std::unique_ptr<Stage> stage_;
     std::unique_ptr<FrameMeasurer> measurer_;  // needs the stage
@@ -147,7 +152,11 @@ private:
 
 void Flight::open() {
     signs_.enter(Call::load_terrain);
-    terrain_ = terrain::load_terrain(scenario_.terrain);
+    terrain_ = terrain::open_terrain(scenario_.terrain);
+    const bool stored = std::dynamic_pointer_cast<const terrain::HeightField>(terrain_) == nullptr;
+    methods_terrain_ = stored ? terrain::open_terrain(scenario_.terrain) : terrain_;
+    // Known before an hour's flight, not after.
+    if (stored && measures_truth()) terrain::require_room_for_whole(terrain_->info());
     path_ = scenario::make_path(scenario_.path, scenario_.frames, scenario_.rate_hz, *terrain_);
     result_.plugin_checksum = file_checksum(spec_.plugin);
     result_.terrain_name = terrain_->info().name;
@@ -170,7 +179,8 @@ void Flight::open() {
 void Flight::make_stage() {
     stage_.reset();  // one context at a time
     stage_ = std::make_unique<Stage>(
-        StageSetup{terrain_, spec_.plugin, spec_.method, spec_.settings, spec_.device}, signs_);
+        StageSetup{methods_terrain_, spec_.plugin, spec_.method, spec_.settings, spec_.device},
+        signs_);
     stage_->check_state(true);
 }
 
@@ -186,7 +196,6 @@ void Flight::prepare() {
     glFinish();
     result_.upload_s = upload.seconds();
     stage_->resize(scenario_.viewport);
-    result_.samples_served = terrain_->samples_served();
 }
 
 void Flight::choose_frames() {
@@ -248,8 +257,13 @@ void Flight::fly_for_time() {
 
 void Flight::fly_in_lockstep() {
     begin_replay(Replay::lockstep);
+    // Not before: what it takes is none of the method's.
+    signs_.enter(Call::load_terrain);
+    const std::shared_ptr<const terrain::HeightField> truth =
+        measures_truth() ? terrain::whole_field(terrain_) : nullptr;
+    signs_.enter(Call::none);
     measurer_ = std::make_unique<FrameMeasurer>(
-        *stage_, measures_truth() ? result_.claimed_px : std::nullopt, measures_truth());
+        *stage_, measures_truth() ? result_.claimed_px : std::nullopt, truth);
     warm_up();  // as the timing replay began
     std::map<std::string, double> sums;
     for (int frame = 0; frame < scenario_.frames; ++frame) {
@@ -374,6 +388,11 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
     } catch (const MethodSkipped& skipped) {
         result.status = CellStatus::skipped;
         result.reason = skipped.what();
+    } catch (const TerrainError& error) {
+        // Met by the harness: the path follows the ground, or the truth needs the whole. It is this
+        // terrain's, and other cells may fly another.
+        result.status = CellStatus::failed;
+        result.reason = fmt::format("reading the terrain: {}{}", error.what(), where());
     } catch (const EnvironmentError& error) {
         result.environment_error = error.what();
     } catch (const InputError& error) {

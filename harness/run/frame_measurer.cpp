@@ -12,9 +12,10 @@
 
 namespace lodbench::run {
 
-FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed, bool truth)
-    : stage_(&stage), terrain_(stage.shared_terrain()) {
-    if (truth) meter_.emplace(terrain_->samples(), terrain_->info(), claimed);
+FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed,
+                             std::shared_ptr<const terrain::HeightField> truth)
+    : stage_(&stage), truth_(std::move(truth)) {
+    if (truth_) meter_.emplace(truth_->samples(), truth_->info(), claimed);
 }
 
 measure::CapturedSurface FrameMeasurer::capture() {
@@ -48,7 +49,7 @@ void FrameMeasurer::measure(FrameRecord& record) {
     stage_->draw_picture();
     const std::vector<float> depth = stage_->read_depth();
     std::vector<std::uint8_t> drawn = stage_->read_color();
-    stage_->draw_reference_picture();
+    stage_->draw_reference_picture(truth_);
     record.truth = meter_->measure(depth, std::move(drawn), stage_->read_color());
 }
 

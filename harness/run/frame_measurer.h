@@ -16,9 +16,10 @@ namespace lodbench::run {
 /// The method's background work is paused by the caller while anything here is called.
 class FrameMeasurer {
 public:
-    /// `truth`: measure it; otherwise triangles are counted only. `claimed`: the method's bound in
-    /// pixels.
-    FrameMeasurer(Stage& stage, std::optional<double> claimed, bool truth);
+    /// `claimed`: the method's bound in pixels. `truth`: the whole terrain that the stage's is, to
+    /// measure against; without it triangles are counted only.
+    FrameMeasurer(Stage& stage, std::optional<double> claimed,
+                  std::shared_ptr<const terrain::HeightField> truth);
 
     /// Goes on with another stage of the same method over the same terrain.
     void move_to(Stage& stage) { stage_ = &stage; }
@@ -44,7 +45,7 @@ private:
     [[nodiscard]] measure::CapturedSurface capture();
 
     Stage* stage_;
-    std::shared_ptr<const terrain::HeightField> terrain_;  ///< outlives the stage
+    std::shared_ptr<const terrain::HeightField> truth_;  ///< outlives the stage
     std::optional<measure::TruthMeter> meter_;
     std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
 };

@@ -21,6 +21,7 @@ constexpr float kSky[] = {0.62F, 0.74F, 0.88F, 1.0F};
 
 Stage::Stage(StageSetup setup, VitalSigns& signs)
     : setup_(std::move(setup)),
+      served_(setup_.terrain),
       plugin_name_(setup_.plugin.filename().string()),
       signs_(signs),
       context_(std::make_unique<platform::Context>(setup_.device)),
@@ -99,7 +100,7 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
 }
 
 void Stage::prepare() {
-    guarded(Call::prepare, [&] { method_->prepare(*setup_.terrain, *device_); });
+    guarded(Call::prepare, [&] { method_->prepare(served_, *device_); });
 }
 
 void Stage::upload() {
@@ -192,9 +193,9 @@ void Stage::draw(const View& view) {
     guarded(Call::draw, [&] { method_->draw(view); });
 }
 
-void Stage::draw_reference_picture() {
+void Stage::draw_reference_picture(const std::shared_ptr<const terrain::HeightField>& whole) {
     if (!reference_picture_) {
-        reference_picture_ = std::make_unique<ReferencePicture>(*device_, setup_.terrain);
+        reference_picture_ = std::make_unique<ReferencePicture>(*device_, whole);
     }
     begin_picture(picture_view(camera_));
     // A large terrain takes a software rasteriser longer than silence is allowed to last.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -10,7 +11,6 @@
 #include "api/error.h"
 #include "scenario/path_curve.h"
 #include "scenario/recorded_path.h"
-#include "terrain/height_field.h"
 
 namespace lodbench::scenario {
 namespace {
@@ -33,8 +33,7 @@ double heading_of(const glm::dvec3& direction) {
 }
 
 /// The keyframe's place in the world.
-glm::dvec3 world_position(const glm::dvec3& written, const PathSpec& spec,
-                          const terrain::HeightField& terrain) {
+glm::dvec3 world_position(const glm::dvec3& written, const PathSpec& spec, const Terrain& terrain) {
     glm::dvec3 position = written;
     if (spec.relative) {
         const TerrainInfo& info = terrain.info();
@@ -53,7 +52,7 @@ glm::dvec3 world_position(const glm::dvec3& written, const PathSpec& spec,
 /// Line, spline and terrain-following.
 class CurvePath final : public FlightPath {
 public:
-    CurvePath(const PathSpec& spec, int frames, double rate_hz, const terrain::HeightField& terrain)
+    CurvePath(const PathSpec& spec, int frames, double rate_hz, const Terrain& terrain)
         : spec_(spec), frames_(frames), terrain_(terrain), curve_(make_curve(frames, rate_hz)) {
         step_ = spec.speed > 0 ? spec.speed / rate_hz : curve_.length() / std::max(1, frames - 1);
     }
@@ -155,7 +154,7 @@ private:
 
     PathSpec spec_;
     int frames_;
-    const terrain::HeightField& terrain_;
+    const Terrain& terrain_;
     bool along_flight_ = false;
     Curve curve_;
     double step_ = 0;
@@ -163,7 +162,7 @@ private:
 
 class OrbitPath final : public FlightPath {
 public:
-    OrbitPath(const PathSpec& spec, int frames, const terrain::HeightField& terrain)
+    OrbitPath(const PathSpec& spec, int frames, const Terrain& terrain)
         : spec_(spec), frames_(frames), centre_(world_position(spec.centre, spec, terrain)) {
         if (!(spec.radius > 0)) {
             refuse(spec, fmt::format("radius is {}; give metres above 0", spec.radius));
@@ -220,7 +219,7 @@ glm::dquat orientation_of(double heading, double pitch, double roll) {
                           glm::angleAxis(glm::radians(roll), glm::dvec3(0, 1, 0)) * north);
 }
 
-double ground_height(const terrain::HeightField& terrain, const glm::dvec2& position) {
+double ground_height(const Terrain& terrain, const glm::dvec2& position) {
     if (!std::isfinite(position.x) || !std::isfinite(position.y)) {
         throw ContractError("ground_height: the position is not finite");
     }
@@ -230,19 +229,17 @@ double ground_height(const terrain::HeightField& terrain, const glm::dvec2& posi
     const double y = std::clamp(info.rows - 1 - steps.y, 0.0, double(info.rows - 1));
     const int column = std::min(int(x), info.columns - 2);
     const int row = std::min(int(y), info.rows - 2);
-    const auto sample = [&](int r, int c) {
-        return double(
-            terrain.samples()[std::size_t(r) * std::size_t(info.columns) + std::size_t(c)]);
-    };
+    std::array<float, 4> cell{};
+    terrain.read({row, column, 2, 2}, cell);
     const double u = x - column;
     const double v = y - row;
-    const double north = sample(row, column) * (1 - u) + sample(row, column + 1) * u;
-    const double south = sample(row + 1, column) * (1 - u) + sample(row + 1, column + 1) * u;
+    const double north = double(cell[0]) * (1 - u) + double(cell[1]) * u;
+    const double south = double(cell[2]) * (1 - u) + double(cell[3]) * u;
     return north * (1 - v) + south * v;
 }
 
 std::unique_ptr<FlightPath> make_path(const PathSpec& spec, int frames, double rate_hz,
-                                      const terrain::HeightField& terrain) {
+                                      const Terrain& terrain) {
     if (frames < 1 || !(rate_hz > 0)) {
         throw ContractError(fmt::format(
             "make_path: {} frames at {} Hz, expected at least 1 above 0 Hz", frames, rate_hz));

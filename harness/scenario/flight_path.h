@@ -13,10 +13,6 @@
 #include "api/camera.h"
 #include "api/terrain.h"
 
-namespace lodbench::terrain {
-class HeightField;
-}
-
 namespace lodbench::scenario {
 
 /// World position in metres, or (x, y) as fractions of the terrain's extent (0, 0 the south-west
@@ -82,8 +78,7 @@ public:
 /// Throws InputError when the specification does not make a path. The terrain must outlive the
 /// path.
 [[nodiscard]] std::unique_ptr<FlightPath> make_path(const PathSpec& spec, int frames,
-                                                    double rate_hz,
-                                                    const terrain::HeightField& terrain);
+                                                    double rate_hz, const Terrain& terrain);
 
 /// The camera's orientation for heading, pitch and roll in degrees, with the conventions of
 /// `Keyframe`.
@@ -91,6 +86,6 @@ public:
 
 /// Height of the ground at world x, y in metres: bilinear between the samples; beyond the terrain
 /// that of the nearest point of its border.
-[[nodiscard]] double ground_height(const terrain::HeightField& terrain, const glm::dvec2& position);
+[[nodiscard]] double ground_height(const Terrain& terrain, const glm::dvec2& position);
 
 }  // namespace lodbench::scenario

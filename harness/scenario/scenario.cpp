@@ -93,6 +93,7 @@ void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& s
         source.file = existing_file(*section, "file", *file, folder);
         source.where = section->where("file");
         source.no_data = section->number("no_data", {-1e300, 1e300});
+        source.cold = section->boolean("cold").value_or(false);
     } else {
         source.synthetic = *synthetic;
         source.where = section->where("synthetic");

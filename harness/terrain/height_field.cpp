@@ -29,24 +29,34 @@ bool positive(double value) {
 
 }  // namespace
 
-HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
-    : heights_(std::move(heights)) {
-    info_ = std::move(info);
-    if (info_.rows < 2 || info_.columns < 2) {
+void check_grid(const TerrainInfo& info) {
+    if (info.rows < 2 || info.columns < 2) {
         throw InputError(fmt::format(
             "terrain '{}': {} rows x {} columns make no surface; at least 2 x 2 samples "
             "are needed",
-            info_.name, info_.rows, info_.columns));
+            info.name, info.rows, info.columns));
     }
-    if (!positive(info_.spacing.x) || !positive(info_.spacing.y)) {
+    if (!positive(info.spacing.x) || !positive(info.spacing.y)) {
         throw InputError(
             fmt::format("terrain '{}': spacing of {} x {} m; both must be positive and finite",
-                        info_.name, info_.spacing.x, info_.spacing.y));
+                        info.name, info.spacing.x, info.spacing.y));
     }
-    if (!std::isfinite(info_.origin.x) || !std::isfinite(info_.origin.y)) {
+    if (!std::isfinite(info.origin.x) || !std::isfinite(info.origin.y)) {
         throw InputError(fmt::format("terrain '{}': origin ({}, {}); both must be finite",
-                                     info_.name, info_.origin.x, info_.origin.y));
+                                     info.name, info.origin.x, info.origin.y));
     }
+}
+
+void refuse_height(const TerrainInfo& info, std::int64_t row, std::int64_t column, float height) {
+    throw InputError(fmt::format(
+        "terrain '{}': the height at row {}, column {} is {}; every height must be finite",
+        info.name, row, column, height));
+}
+
+HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
+    : heights_(std::move(heights)) {
+    info_ = std::move(info);
+    check_grid(info_);
     if (heights_.size() != std::size_t(info_.rows) * std::size_t(info_.columns)) {
         throw ContractError(
             fmt::format("HeightField: expected {} rows x {} columns, found {} heights", info_.rows,
@@ -56,9 +66,7 @@ HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
                                   [](float height) { return !std::isfinite(height); });
     if (bad != heights_.end()) {
         const auto index = bad - heights_.begin();
-        throw InputError(fmt::format(
-            "terrain '{}': the height at row {}, column {} is {}; every height must be finite",
-            info_.name, index / info_.columns, index % info_.columns, *bad));
+        refuse_height(info_, index / info_.columns, index % info_.columns, *bad);
     }
     for (float& height : heights_) height += 0.0F;  // -0 + 0 = +0
     const auto [lowest, highest] = std::minmax_element(heights_.begin(), heights_.end());

@@ -15,6 +15,13 @@
 
 namespace lodbench::terrain {
 
+/// What every terrain must be. Throws InputError for a grid under 2 x 2, a spacing that is not
+/// positive and finite, or an origin that is not finite.
+void check_grid(const TerrainInfo& info);
+/// Throws the InputError for a height that is not finite.
+[[noreturn]] void refuse_height(const TerrainInfo& info, std::int64_t row, std::int64_t column,
+                                float height);
+
 /// A height field held in memory, row by row, row 0 the north edge. Negative zeros become
 /// positive ones, so that equal heights have equal bits. The checksum is FNV-1a (64 bits)
 /// over little-endian words of 32 bits: rows, columns, then the bits of every height, row by row.
@@ -51,6 +58,7 @@ struct TerrainSource {
     std::optional<double> vertical_offset;       ///< metres, added after scaling
     std::optional<double> origin_x, origin_y;    ///< metres, of the south-west sample
     std::optional<double> no_data;               ///< in units of the file
+    bool cold = false;  ///< a store's tiles come from the disk, not from what the system holds
     std::string where;  ///< "scenario.toml:12", put in front of messages; may be empty
 };
 

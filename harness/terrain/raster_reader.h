@@ -72,8 +72,8 @@ protected:
 [[nodiscard]] std::unique_ptr<RasterReader> open_raster(const std::filesystem::path& file,
                                                         const Sidecar& sidecar);
 
-/// Throws InputError for a grid that is too small (under 2 x 2), or larger than 2^31 samples or
-/// than the memory that is free. Called before anything of that size is allocated.
+/// Throws InputError for a grid that is too small (under 2 x 2) or larger than 2^36 samples. Called
+/// before anything of that size is allocated; whether the memory holds it is asked where it must.
 void check_raster_size(const std::filesystem::path& file, std::int64_t rows, std::int64_t columns);
 
 }  // namespace lodbench::terrain

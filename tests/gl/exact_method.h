@@ -69,7 +69,7 @@ inline std::vector<Viewpoint> viewpoints(const terrain::HeightField& terrain) {
 inline void expect_no_error(const std::shared_ptr<const terrain::HeightField>& terrain,
                             const Viewport& size, std::size_t each = 1) {
     Flight flight(terrain, "full_grid", "full-grid");
-    run::FrameMeasurer measurer(flight.stage(), std::nullopt, true);
+    run::FrameMeasurer measurer(flight.stage(), std::nullopt, terrain);
     int frame = 0;
     const std::vector<Viewpoint> all = viewpoints(*terrain);
     for (std::size_t i = 0; i < all.size(); i += each) {

@@ -12,6 +12,7 @@
 #include "gl/method_fixture.h"
 #include "gl/state.h"
 #include "scenario/scenario.h"
+#include "terrain/open_terrain.h"
 
 namespace lodbench::test {
 namespace {
@@ -31,7 +32,7 @@ Picture picture_of_method(run::Stage& stage) {
 }
 
 Picture reference_picture(run::Stage& stage) {
-    stage.draw_reference_picture();
+    stage.draw_reference_picture(terrain::whole_field(stage.terrain()));
     return {stage.read_color(), stage.read_depth()};
 }
 
@@ -175,11 +176,11 @@ TEST(ReferencePicture, costs_the_method_nothing_and_leaves_its_picture_as_it_was
         const Picture before = picture_of_method(stage);
         const std::uint64_t gpu_bytes = stage.method_gpu_bytes();
         const std::uint64_t uploaded = stage.method_uploaded_bytes();
-        const std::uint64_t served = stage.terrain().samples_served();
+        const std::uint64_t served = stage.served().samples_served();
         const auto state = gl::PipelineState::capture();
         EXPECT_GT(reference_picture(stage).covered(), 5000);
         EXPECT_EQ(state.differences(gl::PipelineState::capture()), std::vector<std::string>());
-        EXPECT_EQ(stage.terrain().samples_served(), served) << "what the method asked for";
+        EXPECT_EQ(stage.served().samples_served(), served) << "what the method asked for";
         EXPECT_EQ(differing_pixels(picture_of_method(stage), before), 0);
         EXPECT_EQ(stage.method_gpu_bytes(), gpu_bytes);
         EXPECT_EQ(stage.method_uploaded_bytes(), uploaded);
@@ -193,7 +194,7 @@ TEST(ReferencePicture, leaves_a_method_its_textures) {
     const gl::Texture texture(flight.stage().device(), "test: bound once", GL_TEXTURE_2D, GL_R32F,
                               4, 4);
     for (GLuint unit = 0; unit < 80; ++unit) texture.bind(unit);
-    flight.stage().draw_reference_picture();
+    flight.stage().draw_reference_picture(hills(65, 65));
     for (GLuint unit = 0; unit < 80; ++unit) {
         GLint bound = 0;
         glActiveTexture(GL_TEXTURE0 + unit);
@@ -248,7 +249,7 @@ TEST(ReferencePicture, is_alive_to_those_who_watch_while_it_draws) {
     stage.resize(camera.viewport);
     stage.select(camera, {});
     const std::uint64_t beats = signs.beats.load();
-    stage.draw_reference_picture();
+    stage.draw_reference_picture(terrain);
     EXPECT_EQ(signs.beats.load() - beats, 2U);
     EXPECT_EQ(signs.call.load(), run::Call::none) << "it is not the plugin that works";
     stage.release();

@@ -166,7 +166,8 @@ TEST(Synthetic, refuses_sizes_without_a_cell_or_beyond_the_cap) {
     EXPECT_NE(refusal(form("plane", -5, -5)), "accepted");
     EXPECT_EQ(refusal(form("plane", 2000000000, 2000000000)),
               "synthetic terrain 'plane': 2000000000 rows x 2000000000 columns are more than the "
-              "2147483648 samples that are read; crop or thin it");
+              "2147483648 samples that are held in memory; crop or thin it, or make it a store "
+              "(.tiles)");
 }
 
 TEST(Synthetic, refuses_heights_that_do_not_fit_a_float) {

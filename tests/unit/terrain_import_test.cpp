@@ -113,9 +113,10 @@ TEST_F(ImageImport, damaged_and_absurd_images_are_refused_in_one_line) {
               "z.png: 0 rows x 0 columns are no size of a PNG; fetch or convert it anew");
     EXPECT_EQ(refusal(source("l.png", png(3, 1, 16, 0, {kRow1}))),
               "l.png: 1 rows x 3 columns make no surface; at least 2 x 2 samples are needed");
-    EXPECT_EQ(refusal(source("h.png", png(1000000, 1000000, 16, 0, {kRow1}))),
-              "h.png: 1000000 rows x 1000000 columns are more than the 2147483648 samples that are "
-              "read; crop or thin it");
+    EXPECT_EQ(
+        refusal(source("h.png", png(1000000, 1000000, 16, 0, {kRow1}))),
+        "h.png: 1000000 rows x 1000000 columns are more than the 68719476736 samples that are "
+        "read; crop or thin it");
     EXPECT_EQ(refusal(source("e.png", "GIF89a, in truth")),
               "e.png: is no PNG (its first bytes say so); fetch or convert it anew");
     std::string changed = whole;
@@ -189,7 +190,7 @@ TEST_F(Import, raw_needs_a_sidecar_that_fits) {
         refusal(source("a.raw", "12345678",
                        "rows = 2000000000\ncolumns = 2000000000\ntype = \"int16\"\n"
                        "endian = \"big\"\n")),
-        "a.raw: 2000000000 rows x 2000000000 columns are more than the 2147483648 samples that "
+        "a.raw: 2000000000 rows x 2000000000 columns are more than the 68719476736 samples that "
         "are read; crop or thin it");
 }
 
@@ -238,7 +239,7 @@ TEST_F(Import, damaged_pgm_is_refused) {
         "file is truncated or its size is given wrongly");
     EXPECT_EQ(refusal(source("a.pgm", "P5 999999999999999999 999999999999999999 255\n1")),
               "a.pgm: 999999999999999999 rows x 999999999999999999 columns are more than the "
-              "2147483648 samples that are read; crop or thin it");
+              "68719476736 samples that are read; crop or thin it");
 }
 
 TEST_F(Import, what_is_no_raster_is_refused) {

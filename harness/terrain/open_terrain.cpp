@@ -1,0 +1,123 @@
+#include "terrain/open_terrain.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "api/error.h"
+#include "terrain/memory.h"
+#include "terrain/tile_store.h"
+
+namespace lodbench::terrain {
+namespace {
+
+void check_overrides(const TerrainSource& source) {
+    const auto check = [](const char* name, const std::optional<double>& value, bool positive) {
+        if (value && (!std::isfinite(*value) || (positive && !(*value > 0)))) {
+            throw InputError(fmt::format("terrain: {} = {}; it must be {}", name, *value,
+                                         positive ? "positive and finite" : "finite"));
+        }
+    };
+    check("spacing (x)", source.spacing_x, true);
+    check("spacing (y)", source.spacing_y, true);
+    check("vertical scale", source.vertical_scale, false);
+    check("vertical offset", source.vertical_offset, false);
+    check("origin (x)", source.origin_x, false);
+    check("origin (y)", source.origin_y, false);
+    if (source.no_data && std::isinf(*source.no_data)) {
+        throw InputError("terrain: no-data is infinite; it must be a number or nan");
+    }
+}
+
+/// A store's heights are what they are, and so is where they stand.
+void check_store(const TerrainSource& source) {
+    const auto refuse = [&](const char* name, bool given) {
+        if (!given) return;
+        throw InputError(
+            fmt::format("{}: {} is given, but a tiled store says that itself; leave it out, or "
+                        "import the terrain anew with it",
+                        source.file.string(), name));
+    };
+    refuse("spacing", source.spacing_x || source.spacing_y);
+    refuse("vertical scale", source.vertical_scale.has_value());
+    refuse("vertical offset", source.vertical_offset.has_value());
+    refuse("origin", source.origin_x || source.origin_y);
+    refuse("no-data", source.no_data.has_value());
+}
+
+}  // namespace
+
+void check_source(const TerrainSource& source) {
+    if (source.file.empty() == source.synthetic.empty()) {
+        throw InputError(source.file.empty()
+                             ? "terrain: neither a file nor a synthetic form is named"
+                             : "terrain: both a file and a synthetic form are named; name one");
+    }
+    check_overrides(source);
+    const bool stored = !source.file.empty() && is_store(source.file);
+    if (stored) check_store(source);
+    if (source.cold && !stored) {
+        throw InputError(fmt::format(
+            "{}: cold is set, but only a tiled store (.tiles) stays on disk; leave it out, or make "
+            "it one with `lodbench terrain import`",
+            source.file.empty() ? source.synthetic : source.file.string()));
+    }
+}
+
+std::unique_ptr<Terrain> open_terrain(const TerrainSource& source) {
+    if (source.file.empty() || !is_store(source.file)) return load_terrain(source);
+    try {
+        check_source(source);
+        return std::make_unique<StoredTerrain>(source.file, source.cold);
+    } catch (const InputError& error) {
+        if (source.where.empty()) throw;
+        throw InputError(fmt::format("{}: {}", source.where, error.what()));
+    }
+}
+
+void require_room_for_whole(const TerrainInfo& info) {
+    check_field_size(fmt::format("terrain '{}' as a whole", info.name), info.rows, info.columns,
+                     "fly a smaller one, or without what needs the whole (--no-truth)");
+}
+
+std::shared_ptr<const HeightField> whole_field(const std::shared_ptr<const Terrain>& terrain) {
+    if (auto field = std::dynamic_pointer_cast<const HeightField>(terrain)) return field;
+    return whole_field(*terrain);
+}
+
+std::unique_ptr<HeightField> whole_field(const Terrain& terrain) {
+    const TerrainInfo& info = terrain.info();
+    require_room_for_whole(info);
+    const TilePyramid pyramid = terrain.tiles();
+    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
+    tbb::parallel_for(0, pyramid.rows(0), [&](int tile_row) {
+        std::vector<float> tile(kTileSampleCount);
+        const int rows = std::min(kTileSamples, info.rows - tile_row * kTileCells);
+        for (int tile_column = 0; tile_column < pyramid.columns(0); ++tile_column) {
+            terrain.read_tile({0, tile_row, tile_column}, tile);
+            const int columns = std::min(kTileSamples, info.columns - tile_column * kTileCells);
+            // The line shared with the next row of tiles is that one's to write.
+            const int own = tile_row + 1 < pyramid.rows(0) ? kTileCells : rows;
+            for (int row = 0; row < own; ++row) {
+                std::copy_n(tile.begin() + std::ptrdiff_t(row) * kTileSamples, columns,
+                            heights.begin() +
+                                (std::ptrdiff_t(tile_row) * kTileCells + row) * info.columns +
+                                std::ptrdiff_t(tile_column) * kTileCells);
+            }
+        }
+    });
+    auto field = std::make_unique<HeightField>(info, std::move(heights));
+    if (field->info().checksum != info.checksum) {
+        throw TerrainError(fmt::format(
+            "terrain '{}': its tiles make a grid of checksum {}, expected {}; the file is damaged, "
+            "build it anew",
+            info.name, field->info().checksum, info.checksum));
+    }
+    return field;
+}
+
+}  // namespace lodbench::terrain

@@ -1,0 +1,42 @@
+#pragma once
+// Any terrain row by row, for what passes over terrains larger than memory.
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "terrain/height_field.h"
+
+namespace lodbench::terrain {
+
+/// Full rows from the north.
+class TerrainRows {
+public:
+    TerrainRows() = default;
+    virtual ~TerrainRows() = default;
+    TerrainRows(const TerrainRows&) = delete;
+    TerrainRows& operator=(const TerrainRows&) = delete;
+
+    /// Height range and checksum may not be known yet.
+    [[nodiscard]] const TerrainInfo& info() const { return info_; }
+    /// "png, uint16, through OpenImageIO"; "tiled store, float32"; "synthetic".
+    [[nodiscard]] const std::string& kind() const { return kind_; }
+    [[nodiscard]] bool spacing_assumed() const { return spacing_assumed_; }
+    /// The next row, `columns` heights in metres.
+    virtual void next(std::span<float> heights) = 0;
+
+protected:
+    TerrainInfo info_;
+    std::string kind_;
+    bool spacing_assumed_ = false;
+};
+
+/// Gives the source's rows to `body`. Of a raster or a store only a few rows are held. But voids
+/// are filled from whole columns: a raster in which one turns up is loaded, and `body` begins anew.
+/// Throws what `load_terrain` throws, InputError where a raster with voids does not fit into the
+/// memory, and what `body` throws.
+void with_rows(const TerrainSource& source, const std::function<void(TerrainRows&)>& body);
+
+}  // namespace lodbench::terrain
