@@ -68,7 +68,7 @@ void add_to_shape(const std::string& text, terrain::TerrainSource& source) {
 
 }  // namespace
 
-terrain::LoadedTerrain load(const TerrainOptions& options, const CLI::App& command) {
+terrain::TerrainSource source_of(const TerrainOptions& options, const CLI::App& command) {
     terrain::TerrainSource source = options.source;
     if (source.synthetic.empty()) {
         for (const char* option : {"--rows", "--columns", "--seed", "--set"}) {
@@ -86,7 +86,11 @@ terrain::LoadedTerrain load(const TerrainOptions& options, const CLI::App& comma
         if (!source.spacing_y) source.spacing_y = options.spacing;
     }
     for (const std::string& setting : options.settings) add_to_shape(setting, source);
-    return terrain::load_terrain_with_provenance(source);
+    return source;
+}
+
+terrain::LoadedTerrain load(const TerrainOptions& options, const CLI::App& command) {
+    return terrain::load_terrain_with_provenance(source_of(options, command));
 }
 
 }  // namespace lodbench::cli

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "terrain/load_terrain.h"
+#include "terrain/tile_store_format.h"
 
 namespace lodbench::cli {
 
@@ -27,10 +28,29 @@ void add_shape(CLI::App& command, TerrainOptions& options);
 /// The forms and their parameters, for --help.
 [[nodiscard]] std::string forms_text();
 
-/// Throws InputError.
+/// The source that the options name. Throws InputError.
+[[nodiscard]] terrain::TerrainSource source_of(const TerrainOptions& options,
+                                               const CLI::App& command);
+/// Loads it. Throws InputError.
 [[nodiscard]] terrain::LoadedTerrain load(const TerrainOptions& options, const CLI::App& command);
 
-/// `lodbench terrain errors`.
+/// What is said of a terrain, of one in a store too.
+struct TerrainText {
+    TerrainInfo info = {};
+    std::string kind = {};
+    bool spacing_assumed = false;
+    std::optional<terrain::StoreSampling> store = {};  ///< empty where it is none
+    std::string written = {};                          ///< file; empty where none was written
+    double seconds = 0;                                ///< that writing a store took
+};
+void print(const TerrainText& text, bool json);
+
+/// One command each: `lodbench terrain ...`.
+void add_terrain_info(CLI::App& parent);
+void add_terrain_import(CLI::App& parent);
+void add_terrain_synth(CLI::App& parent);
+void add_terrain_upsample(CLI::App& parent);
+void add_terrain_verify(CLI::App& parent, int& status);
 void add_terrain_errors(CLI::App& parent);
 
 }  // namespace lodbench::cli

@@ -1,0 +1,72 @@
+// lodbench terrain verify: every tile of a store.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "api/error.h"
+#include "cli/terrain_options.h"
+#include "report/json.h"
+#include "run/exit_status.h"
+#include "terrain/tile_store_check.h"
+
+namespace lodbench::cli {
+namespace {
+
+struct VerifyOptions {
+    std::string file;
+    int most = 20;
+    bool cold = false, json = false;
+};
+
+int run(const VerifyOptions& options) {
+    if (!terrain::is_store(options.file)) {
+        throw InputError(fmt::format(
+            "{}: not a tiled store (.tiles); `lodbench terrain import` makes one", options.file));
+    }
+    const terrain::StoredTerrain store(options.file, options.cold);
+    const auto start = std::chrono::steady_clock::now();
+    const terrain::StoreReport report = terrain::check_tiles(store, std::size_t(options.most));
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const int status = report.fault_count == 0 ? run::kAllWell : run::kPromiseBroken;
+    if (options.json) {
+        Json::Value object;
+        object["name"] = store.info().name;
+        object["tiles"] = Json::UInt64(report.tiles);
+        object["bytes"] = Json::UInt64(report.bytes);
+        object["seconds"] = seconds;
+        object["fault_count"] = Json::UInt64(report.fault_count);
+        object["faults"] = Json::arrayValue;
+        for (const std::string& fault : report.faults) object["faults"].append(fault);
+        fmt::print("{}\n", report::to_text(object, true));
+        return status;
+    }
+    for (const std::string& fault : report.faults) fmt::print("{}: {}\n", options.file, fault);
+    if (report.fault_count > report.faults.size()) {
+        fmt::print("{}: {} more\n", options.file, report.fault_count - report.faults.size());
+    }
+    fmt::print("{}: {} tiles, {} faults, {:.1f} s, {:.0f} MB/s\n", options.file, report.tiles,
+               report.fault_count, seconds, double(report.bytes) * 1e-6 / seconds);
+    return status;
+}
+
+}  // namespace
+
+void add_terrain_verify(CLI::App& parent, int& status) {
+    const auto options = std::make_shared<VerifyOptions>();
+    CLI::App& command = *parent.add_subcommand(
+        "verify",
+        "Reads every tile of a store and compares it with checksum, summary, neighbours and finer "
+        "levels; status 1 where one is damaged");
+    command.add_option("FILE", options->file, "Tiled store (.tiles)")->required();
+    command.add_option("--most", options->most, "Faults that are put in words")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    command.add_flag("--cold", options->cold, "From the disk, not from what the system holds");
+    command.add_flag("--json", options->json, "One JSON object on standard output");
+    command.callback([options, &status] { status = run(*options); });
+}
+
+}  // namespace lodbench::cli
