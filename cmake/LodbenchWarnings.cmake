@@ -18,3 +18,7 @@ if(LODBENCH_SANITIZE)
   add_compile_options(-fsanitize=${LODBENCH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${LODBENCH_SANITIZE})
 endif()
+if(LODBENCH_FUZZ)
+  # So that libFuzzer sees which way the code went.
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()

@@ -65,7 +65,7 @@ public:
         : form_(form), given_(given) {
         for (const auto& [key, value] : given) {
             const bool known = std::ranges::any_of(
-                form.params, [&key](const ShapeParam& param) { return key == param.name; });
+                form.params, [&name = key](const ShapeParam& param) { return name == param.name; });
             if (!known) throw InputError(unknown(key));
             if (!std::isfinite(value)) refuse(key, value, "it must be finite");
         }

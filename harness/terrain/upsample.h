@@ -12,10 +12,11 @@ namespace lodbench::terrain {
 
 /// Samples of the result between two of the source, and what is added.
 struct Upsampling {
-    int factor = 2;                    ///< 1 to 64
-    double fractal_amplitude = 0;      ///< metres, >= 0; above 0 the factor is a power of two
-    std::uint64_t seed = 1;            ///< of the fractal
-    std::optional<int> rows, columns;  ///< of the result, kept from the north-west; all if empty
+    int factor = 2;                   ///< 1 to 64
+    double fractal_amplitude = 0;     ///< metres, >= 0; above 0 the factor is a power of two
+    std::uint64_t seed = 1;           ///< of the fractal
+    std::optional<int> rows = {};     ///< of the result, kept from the north; all if empty
+    std::optional<int> columns = {};  ///< kept from the west
 };
 
 /// What the result is: (rows - 1) * factor + 1 rows unless fewer are kept, columns likewise; the
