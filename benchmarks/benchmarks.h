@@ -59,6 +59,10 @@ void errors_cost(const Options& options);
 /// side, up to `size`; needs a device.
 void patches_cost(const Options& options);
 
+/// `store`: building, reading and verifying a tiled store of the terrain, float32 and 16 bits, in a
+/// temporary folder.
+void store_cost(const Options& options);
+
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();
 
