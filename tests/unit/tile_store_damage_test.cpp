@@ -266,6 +266,16 @@ TEST_F(DamagedStore, with_tiles_that_do_not_fit_together_is_found_by_the_check) 
     EXPECT_FALSE(changed({0, 1, 1}, 11, 11).empty());
 }
 
+TEST_F(DamagedStore, of_another_grid_than_its_header_says_is_found_by_whoever_reads_all) {
+    std::string bytes = whole_;
+    set_field(bytes, 104, std::uint64_t(0x1234));
+    sign(bytes);
+    const std::string found = "the checksum " + StoredTerrain(file_).info().checksum;
+    EXPECT_THAT(faults(bytes),
+                testing::ElementsAre(HasSubstr(found + ", the header says 0000000000001234")));
+    EXPECT_THROW((void)terrain::whole_field(StoredTerrain(file_)), TerrainError);
+}
+
 TEST_F(DamagedStore, with_heights_that_are_none_serves_none) {
     for (const float bad : {float(NAN), float(INFINITY), -float(INFINITY), 1e30F}) {
         terrain::write_store(rough_field(2, 2, 1), std::nullopt, file_);

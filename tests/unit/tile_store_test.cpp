@@ -153,6 +153,20 @@ TEST_F(TileStore, of_steps_reaches_over_65535_of_them_wherever_they_lie) {
     EXPECT_FALSE(std::filesystem::exists(file("b.tiles")));
 }
 
+TEST_F(TileStore, has_no_negative_zero) {
+    const std::vector<float> row = {-0.0F, 0.0F, -0.1F};
+    for (const std::optional<double> step : {std::optional<double>(), std::optional(1.0)}) {
+        terrain::StoreWriter writer(grid("zeros", 2, 3), step, file());
+        writer.push(row);
+        writer.push(row);
+        const TerrainInfo info = writer.finish();
+        const HeightField field(grid("zeros", 2, 3),
+                                {0, 0, step ? 0 : -0.1F, 0, 0, step ? 0 : -0.1F});
+        EXPECT_EQ(info.checksum, field.info().checksum);
+        expect_equal(StoredTerrain(file()), field);
+    }
+}
+
 TEST_F(TileStore, tiles_lie_in_z_order_level_upon_level_from_the_coarsest) {
     const HeightField field = rough_field(200, 300, 1);  // 4 x 5, 2 x 3, 1 x 2, 1 x 1
     terrain::write_store(field, std::nullopt, file());
@@ -301,6 +315,10 @@ TEST_F(TileStore, is_written_whole_or_not_at_all) {
     EXPECT_THROW(terrain::write_store(field, std::nullopt, file("a.raw")), InputError);
     EXPECT_THROW(terrain::write_store(field, std::nullopt, file("none/a.tiles")), InputError);
     EXPECT_THROW(terrain::write_store(field, std::nullopt, "/proc/a.tiles"), EnvironmentError);
+    // Refused at the very end: a file does not take the place of a folder.
+    std::filesystem::create_directory(file("d.tiles"));
+    EXPECT_THROW(terrain::write_store(field, std::nullopt, file("d.tiles")), EnvironmentError);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 2);
     TerrainInfo info = field.info();
     info.name = std::string(257, 'n');
     EXPECT_THROW(terrain::StoreWriter(info, std::nullopt, file()), InputError);
