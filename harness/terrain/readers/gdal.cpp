@@ -53,6 +53,9 @@ void register_drivers() {
     GDALRegister_DTED();
     GDALRegister_EHdr();
     GDALRegister_HFA();
+    // Of the blocks that it keeps: rows are asked for in order, and a terrain larger than memory is
+    // passed over in little of it. By default it takes a twentieth of all there is.
+    GDALSetCacheMax64(GIntBig(256) << 20);
 }
 
 constexpr std::array<const char*, 8> kDrivers = {"GTiff", "AAIGrid", "SRTMHGT", "USGSDEM",
