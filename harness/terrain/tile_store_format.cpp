@@ -340,8 +340,10 @@ void encode_tile(std::span<const float> heights, const StoreSampling& sampling,
         return;
     }
     for (const float height : heights) {
-        // Exact: heights are multiples of the step that float32 tells apart.
-        put(place, std::uint16_t(std::int64_t(std::nearbyint(double(height) / sampling.step))));
+        // Exact: heights are multiples of the step that float32 tells apart. Added to 1.5 * 2^52 a
+        // number is rounded to a whole one, of which the last bits of the sum are the last bits.
+        const double sum = double(height) / sampling.step + kRounding;
+        put(place, std::uint16_t(std::bit_cast<std::uint64_t>(sum)));
         place += 2;
     }
 }

@@ -60,6 +60,9 @@ inline constexpr std::size_t kStoreNameBytes = 256;
 inline constexpr int kMaxStoreLevels = 25;
 /// Metres.
 inline constexpr double kLeastStep = 1e-6, kGreatestStep = 1e6;
+/// 1.5 * 2^52: added to a number below 2^51 and taken away again it leaves the nearest whole one,
+/// of two that are as near the even one, as nearbyint does, which is a call for each.
+inline constexpr double kRounding = 0x1.8p52;
 /// Steps that a height may be from 0 m: their multiples of the step stay apart in float32.
 inline constexpr std::int64_t kMostSteps = std::int64_t(1) << 22;
 

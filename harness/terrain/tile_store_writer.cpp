@@ -79,10 +79,11 @@ void StoreWriter::round_to_steps(std::span<float> row) {
     double lowest = 0;
     double highest = 0;
     for (std::size_t column = 0; column < row.size(); ++column) {
-        const double steps = std::nearbyint(double(row[column]) / sampling.step);
+        // Too many steps for this rounding are too many for the check below.
+        const double steps = (double(row[column]) / sampling.step + kRounding) - kRounding;
         lowest = column == 0 ? steps : std::min(lowest, steps);
         highest = column == 0 ? steps : std::max(highest, steps);
-        row[column] = float(sampling.step * (steps + 0.0));
+        row[column] = float(sampling.step * steps);
     }
     if (-lowest > double(kMostSteps) || highest > double(kMostSteps)) {
         throw InputError(fmt::format(
