@@ -14,8 +14,8 @@
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    const std::vector<std::string> known = {"errors", "harness", "lindstrom", "patches",
-                                            "rays",   "store",   "truth"};
+    const std::vector<std::string> known = {"blocks",  "errors", "harness", "lindstrom",
+                                            "patches", "rays",   "store",   "truth"};
     std::vector<std::string> subjects = known;
     app.add_option("subjects", subjects,
                    fmt::format("{}; all when none is named", fmt::join(known, ", ")))
@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
         return std::find(subjects.begin(), subjects.end(), subject) != subjects.end();
     };
     try {
+        if (wanted("blocks")) lodbench::benchmarks::blocks_cost(options);
         if (wanted("errors")) lodbench::benchmarks::errors_cost(options);
         if (wanted("harness")) lodbench::benchmarks::harness_cost();
         if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);

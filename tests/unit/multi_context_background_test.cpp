@@ -39,6 +39,10 @@ public:
         --open_;
         --waiting_;
     }
+    [[nodiscard]] int open() {
+        const std::lock_guard lock(mutex_);
+        return open_;
+    }
     void wait_until_someone_waits() {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [this] { return waiting_ > 0; });
@@ -130,6 +134,7 @@ TEST(Background, nothing_is_begun_or_handed_over_while_paused) {
     background.ask(2);
     gate.let(1);
     std::this_thread::sleep_for(milliseconds(30));
+    EXPECT_EQ(gate.open(), 1) << "nobody came through";
     EXPECT_EQ(background.take(), 1U);
     EXPECT_THROW(background.wait_for(2), ContractError) << "would wait for ever";
     background.wait_for(1);
@@ -140,17 +145,21 @@ TEST(Background, nothing_is_begun_or_handed_over_while_paused) {
 
 TEST(Background, what_is_under_way_is_completed_by_the_pause_and_pays_for_it_after_the_resume) {
     constexpr auto kWork = milliseconds(120);
-    Doubler background([=]() -> Doubler::Work {
-        return [=](const int& request, int& result) {
+    std::atomic<bool> works{false};
+    Doubler background([&]() -> Doubler::Work {
+        return [&](const int& request, int& result) {
+            works = true;
             std::this_thread::sleep_for(kWork);
             result = 2 * request;
+            works = false;
         };
     });
     background.ask(1);
-    std::this_thread::sleep_for(milliseconds(20));
+    while (!works) std::this_thread::sleep_for(milliseconds(1));
     const auto paused = SteadyClock::now();
     background.pause();
     const auto completing = SteadyClock::now() - paused;
+    EXPECT_FALSE(works);
     EXPECT_EQ(background.take(), 0U) << "completed but not handed over";
     std::this_thread::sleep_for(milliseconds(50));
     const auto resumed = SteadyClock::now();
