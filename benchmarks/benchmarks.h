@@ -66,6 +66,10 @@ void store_cost(const Options& options);
 /// `size`; needs a device.
 void blocks_cost(const Options& options);
 
+/// `staleness`: multi-context's errors over one terrain, with errors of an eye some way behind; needs
+/// a device.
+void staleness_cost(const Options& options);
+
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();
 

@@ -31,7 +31,7 @@ height = 480
 kind = "line"
 start = [{x}, {y}, {height}]
 heading = {heading}
-speed = {speed}
+speed = {moves}
 pitch = {pitch}
 frames = {frames}
 rate_hz = {rate}
@@ -80,7 +80,9 @@ def main():
         for speed in options.speeds.split(","):
             file = pathlib.Path(folder) / f"speed{speed}.toml"
             file.write_text(SCENARIO.format(
-                speed=speed, terrain=terrain.resolve(), terrain_keys=keys, near=options.near, x=x, y=y,
+                speed=speed,
+                moves=max(float(speed), 1e-6),  # a flight of no speed is refused
+                terrain=terrain.resolve(), terrain_keys=keys, near=options.near, x=x, y=y,
                 height=height, heading=options.heading, pitch=options.pitch, frames=options.frames,
                 rate=options.rate, every=options.every, delta=options.delta, errors=options.errors,
                 readback=options.readback), encoding="utf-8")
