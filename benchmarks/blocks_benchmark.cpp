@@ -172,14 +172,14 @@ void blocks_cost(const Options& options) {
         "  errors                ms: level 1       2       3       4     1..n | read-back KiB  ms  "
         "whole/this | all, ms whole/this | traversal ms  blocks\n");
     for (const int size : kSizes) {
-        if (size > options.size) break;
+        if (size > std::min({options.size, whole->info().rows, whole->info().columns})) break;
         errors_of(*corner_of(*whole, size), 1, options.repetitions);
     }
     fmt::print(
         "  draws   size  picture  delta  blocks | submit ms: a block  all  ratio | to the end: a "
         "block  all  ratio\n");
     for (const int size : kSizes) {
-        if (size > options.size) break;
+        if (size > std::min({options.size, whole->info().rows, whole->info().columns})) break;
         const auto terrain = corner_of(*whole, size);
         for (const int picture : {64, 640}) {
             for (const double delta : {0.5, 2.0, 8.0}) {
