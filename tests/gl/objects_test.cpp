@@ -128,7 +128,8 @@ TEST(Includes, expand_each_file_once_and_keep_line_numbers) {
     const Expanded expanded = expand_includes("a.vert", kShaders);
     EXPECT_EQ(expanded.files,
               (std::vector<std::string>{"a.vert", "b.glsl", "common/blocks_user.glsl",
-                                        "common/terrain.glsl", "common/blocks.glsl"}));
+                                        "common/terrain.glsl", "common/position.glsl",
+                                        "common/blocks.glsl"}));
     EXPECT_TRUE(
         expanded.text.starts_with("#version 450 core\n#line 1 1\n#line 1 2\n// nothing\n#line 2 "
                                   "1\nvec3 b() { return vec3(1.0); }\n"
