@@ -2,14 +2,13 @@
 // Blocks of cells: how the full grid is cut up, and which blocks a camera may see.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "api/camera.h"
 #include "api/terrain.h"
+#include "common/view_frustum.h"
 
 namespace lodbench::full_grid {
 
@@ -75,34 +74,22 @@ inline Plan make_plan(int rows, int columns, int tile_samples) {
     return plan;
 }
 
-/// Whether a camera may see a block: false only where the block's box, in double, lies wholly
-/// outside one plane of the frustum. The slack of a millionth of the distance covers the rounding
-/// of the picture's own float arithmetic, so that nothing that reaches a pixel is left out.
+/// Whether a camera may see a block; see common::ViewFrustum.
 class Visibility {
 public:
     Visibility(const Camera& camera, const TerrainInfo& terrain)
-        : planes_(camera.frustum_planes()), eye_(camera.position), terrain_(terrain) {}
+        : frustum_(camera), terrain_(terrain) {}
 
     [[nodiscard]] bool may_see(const Block& block, const BlockShape& shape) const {
         const glm::dvec2 north_west = terrain_.position(block.row, block.column);
         const glm::dvec2 south_east =
             terrain_.position(block.row + shape.rows, block.column + shape.columns);
-        const glm::dvec3 low(north_west.x, south_east.y, block.min_height);
-        const glm::dvec3 high(south_east.x, north_west.y, block.max_height);
-        const glm::dvec3 centre = (low + high) * 0.5 - eye_;
-        const glm::dvec3 half = (high - low) * 0.5;
-        const double slack = 1e-6 * (glm::length(centre) + glm::length(half));
-        return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec4& plane) {
-            const glm::dvec3 normal(plane);
-            const double farthest_inward =
-                glm::dot(normal, centre) + glm::dot(glm::abs(normal), half) + plane.w;
-            return farthest_inward >= -slack;
-        });
+        return frustum_.may_see({{north_west.x, south_east.y, block.min_height},
+                                 {south_east.x, north_west.y, block.max_height}});
     }
 
 private:
-    std::array<glm::dvec4, 5> planes_;
-    glm::dvec3 eye_;
+    common::ViewFrustum frustum_;
     TerrainInfo terrain_;
 };
 
