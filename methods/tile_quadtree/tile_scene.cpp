@@ -35,7 +35,9 @@ void TileScene::upload(gl::Device& device, std::span<const gl::ShaderSource> sha
     constexpr GLsizei kStride = sizeof(Instance);
     vertices_.integer_attribute(0, 4, GL_INT, instances_, offsetof(Instance, slot), kStride, 1);
     vertices_.integer_attribute(1, 4, GL_INT, instances_, offsetof(Instance, coarser), kStride, 1);
-    vertices_.attribute(2, 1, instances_, offsetof(Instance, foot), kStride, 1);
+    vertices_.integer_attribute(2, 1, GL_INT, instances_, offsetof(Instance, coarsened), kStride,
+                                1);
+    vertices_.attribute(3, 1, instances_, offsetof(Instance, foot), kStride, 1);
     vertices_.elements(indices_);
     region_texture_ = gl::Texture(device, "tile_quadtree: region", GL_TEXTURE_2D, GL_RGBA32F,
                                   region_pixels_, region_pixels_);
@@ -54,13 +56,15 @@ void TileScene::freeze(std::span<const DrawnTile> tiles, const TileCatalogue& ca
     for (const DrawnTile& drawn : tiles) {
         const TileId& tile = drawn.tile;
         Instance& instance = staged_.emplace_back();
-        instance.slot = streamer.slot(tile).value();
+        instance.slot = streamer.slot(drawn.source()).value();
         instance.level = tile.level;
         instance.row = tile.row;
         instance.column = tile.column;
         for (std::size_t edge = 0; edge < 4; ++edge) {
-            instance.coarser[edge] = cracks_ == Cracks::snap ? drawn.edges.coarser[edge] : 0;
+            instance.coarser[edge] =
+                cracks_ == Cracks::snap ? drawn.edges.coarser[edge] : drawn.coarsened;
         }
+        instance.coarsened = drawn.coarsened;
         // Of a line of samples that two tiles share, each draws some and interpolates: no gap
         // between them reaches below the line's lowest sample. A sixteenth of a cell more, for what
         // the rasteriser leaves open on flat ground.

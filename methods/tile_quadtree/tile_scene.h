@@ -47,9 +47,10 @@ private:
     struct Instance {
         std::int32_t slot, level, row, column;
         std::int32_t coarser[4];
+        std::int32_t coarsened;
         float foot;
     };
-    static_assert(sizeof(Instance) == 36);
+    static_assert(sizeof(Instance) == 40);
 
     Cracks cracks_;
     int region_pixels_;

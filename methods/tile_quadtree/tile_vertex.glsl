@@ -1,8 +1,9 @@
 // One vertex of a drawn tile, for the picture and for the visible region alike.
 
 layout(location = 0) in ivec4 tile;     // layer of `heights`, level, row, column
-layout(location = 1) in ivec4 coarser;  // levels by which the neighbour in the north, west, east and south is coarser
-layout(location = 2) in float foot;     // height on which the tile's skirt stands
+layout(location = 1) in ivec4 coarser;  // levels by which vertices are coarser on the north, west, east and south edge
+layout(location = 2) in int coarsened;  // levels by which the samples are coarser than the tile
+layout(location = 3) in float foot;     // height on which the tile's skirt stands
 
 layout(binding = 0) uniform sampler2DArray heights;
 
@@ -35,15 +36,18 @@ TileVertex tile_vertex() {
         inside = ivec2(gl_VertexID % kVertices, gl_VertexID / kVertices);
     }
     // Corners lie in two edges and are moved by neither.
-    ivec2 vertex = inside;
-    if (inside.y == 0) vertex.x = snapped(inside.x, coarser.x);
-    if (inside.y == kCells) vertex.x = snapped(inside.x, coarser.w);
-    if (inside.x == 0) vertex.y = snapped(inside.y, coarser.y);
-    if (inside.x == kCells) vertex.y = snapped(inside.y, coarser.z);
+    ivec2 own = ivec2(snapped(inside.x, coarsened), snapped(inside.y, coarsened));
+    ivec2 vertex = own;
+    if (own.y == 0) vertex.x = snapped(inside.x, coarser.x);
+    if (own.y == kCells) vertex.x = snapped(inside.x, coarser.w);
+    if (own.x == 0) vertex.y = snapped(inside.y, coarser.y);
+    if (own.x == kCells) vertex.y = snapped(inside.y, coarser.z);
     TileVertex result;
     // Padding, which repeats the height of the nearest sample, falls onto that sample: the surface ends
     // where the grid does, and an edge's end is the same vertex on every level.
     result.grid_sample = min((vertex + kCells * tile.wz) << tile.y, eye_sample.zw - 1);
-    result.height = at_foot ? foot : texelFetch(heights, ivec3(vertex, tile.x), 0).r;
+    ivec2 corner = kCells * (tile.wz & ((1 << coarsened) - 1));  // within the tile whose samples are drawn
+    ivec2 texel = (corner + vertex) >> coarsened;
+    result.height = at_foot ? foot : texelFetch(heights, ivec3(texel, tile.x), 0).r;
     return result;
 }

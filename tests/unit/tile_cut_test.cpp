@@ -173,7 +173,14 @@ TEST(Cut, covers_every_leaf_once_whatever_is_resident) {
                 };
                 const auto drawn = cut.build(tree, resident);
                 expect_covered_once(catalogue, drawn);
-                for (const DrawnTile& tile : drawn) EXPECT_TRUE(resident(tile.tile));
+                for (const DrawnTile& tile : drawn) {
+                    EXPECT_TRUE(resident(tile.source()));
+                    for (int up = 0; up < tile.coarsened; ++up) {
+                        EXPECT_FALSE(resident({tile.tile.level + up, tile.tile.row >> up,
+                                               tile.tile.column >> up}))
+                            << "a nearer ancestor is resident";
+                    }
+                }
                 if (there == 0) {
                     EXPECT_EQ(drawn.size(), 1U);
                 }
@@ -182,7 +189,7 @@ TEST(Cut, covers_every_leaf_once_whatever_is_resident) {
     }
 }
 
-TEST(Cut, draws_a_missing_tiles_nearest_ancestor_that_is_resident) {
+TEST(Cut, a_missing_tile_is_drawn_from_its_nearest_ancestor_and_no_other_tile_suffers) {
     const FakeTerrain terrain(257, 257);
     const TileCatalogue catalogue(terrain);
     CutBuilder cut(catalogue);
@@ -191,50 +198,80 @@ TEST(Cut, draws_a_missing_tiles_nearest_ancestor_that_is_resident) {
         return !(tile == TileId{0, 1, 1}) && !(tile == TileId{0, 3, 3}) &&
                !(tile == TileId{1, 1, 1});
     });
-    // The first hole is filled by its parent; the second one's parent is missing too: the root.
-    ASSERT_EQ(drawn.size(), 1U);
-    EXPECT_EQ(drawn[0].tile, catalogue.pyramid().root());
-    EXPECT_TRUE(drawn[0].stands_in);
-    const auto one_hole =
-        cut.build(tree, [](const TileId& tile) { return !(tile == TileId{0, 1, 1}); });
-    EXPECT_EQ(one_hole.size(), 13U);
-    EXPECT_EQ(std::ranges::count(one_hole, true, &DrawnTile::stands_in), 1);
+    ASSERT_EQ(drawn.size(), 16U);
+    for (const DrawnTile& tile : drawn) {
+        // The first hole is filled by its parent; the second one's parent is missing too.
+        const int expected = tile.tile == TileId{0, 1, 1} ? 1 : tile.tile == TileId{0, 3, 3} ? 2 : 0;
+        EXPECT_EQ(tile.coarsened, expected);
+        EXPECT_EQ(tile.stands_in, expected > 0);
+    }
+    const auto quarter = cut.build(tree, [](const TileId& tile) {
+        return tile.level > 0 || tile.row > 1 || tile.column > 1;
+    });
+    EXPECT_EQ(quarter.size(), 13U) << "of a tile none of whose children is there it is drawn itself";
+    EXPECT_EQ(std::ranges::count(quarter, true, &DrawnTile::stands_in), 1);
 }
 
-/// The level of the drawn tile over a cell; -1 where none is.
-int level_over(const TileCatalogue& catalogue, const std::map<std::size_t, int>& drawn, int row,
-               int column) {
+/// The drawn tile over a level-0 tile; nullptr where none is.
+const DrawnTile* tile_over(const TileCatalogue& catalogue,
+                           const std::map<std::size_t, const DrawnTile*>& drawn, int row,
+                           int column) {
     for (TileId tile{0, row, column}; catalogue.pyramid().contains(tile);
          tile = {tile.level + 1, tile.row / 2, tile.column / 2}) {
-        if (drawn.contains(catalogue.index(tile))) return tile.level;
+        const auto found = drawn.find(catalogue.index(tile));
+        if (found != drawn.end()) return found->second;
     }
-    return -1;
+    return nullptr;
 }
 
-TEST(Cut, edges_say_how_much_coarser_the_tile_beyond_is) {
+TEST(Cut, tiles_on_both_sides_of_a_line_put_their_vertices_at_the_same_places) {
     const FakeTerrain terrain(1025, 700);
     const TileCatalogue catalogue(terrain);
     CutBuilder cut(catalogue);
-    for (unsigned seed = 0; seed < 50; ++seed) {
-        const auto tiles = cut.build(random_tree(catalogue, seed, 0.75),
-                                     [](const TileId&) { return true; });
-        std::map<std::size_t, int> drawn;
-        for (const DrawnTile& tile : tiles) drawn[catalogue.index(tile.tile)] = tile.tile.level;
+    int coarsened = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        const auto tiles =
+            cut.build(random_tree(catalogue, seed, 0.75), [&](const TileId& tile) {
+                return seed % 3 == 0 || (unsigned(catalogue.index(tile)) * 2654435761U + seed) % 7 > 2;
+            });
+        std::map<std::size_t, const DrawnTile*> drawn;
+        for (const DrawnTile& tile : tiles) drawn[catalogue.index(tile.tile)] = &tile;
         for (const DrawnTile& tile : tiles) {
+            coarsened += tile.coarsened > 0;
             const int side = 1 << tile.tile.level;
             const int row = tile.tile.row * side, column = tile.tile.column * side;
-            const int beyond[4] = {level_over(catalogue, drawn, row - 1, column),
-                                   level_over(catalogue, drawn, row, column - 1),
-                                   level_over(catalogue, drawn, row, column + side),
-                                   level_over(catalogue, drawn, row + side, column)};
+            for (int i = 0; i < side; ++i) {
+                const std::array<const DrawnTile*, 4> beyond = {
+                    tile_over(catalogue, drawn, row - 1, column + i),
+                    tile_over(catalogue, drawn, row + i, column - 1),
+                    tile_over(catalogue, drawn, row + i, column + side),
+                    tile_over(catalogue, drawn, row + side, column + i)};
+                for (std::size_t edge = 0; edge < 4; ++edge) {
+                    const int level = tile.tile.level + tile.edges.coarser[edge];
+                    EXPECT_GE(level, tile.source().level);
+                    if (beyond[edge] == nullptr) continue;
+                    EXPECT_EQ(level, beyond[edge]->tile.level + beyond[edge]->edges.coarser[3 - edge]);
+                    EXPECT_GE(level, beyond[edge]->source().level);
+                }
+            }
+            if (seed % 3 != 0) continue;
+            // With all resident: the coarser of both, no more.
             for (std::size_t edge = 0; edge < 4; ++edge) {
-                EXPECT_EQ(tile.edges.coarser[edge], std::max(beyond[edge] - tile.tile.level, 0));
+                if (tile.edges.coarser[edge] == 0) continue;
+                const DrawnTile* other =
+                    edge == 0   ? tile_over(catalogue, drawn, row - 1, column)
+                    : edge == 1 ? tile_over(catalogue, drawn, row, column - 1)
+                    : edge == 2 ? tile_over(catalogue, drawn, row, column + side)
+                                : tile_over(catalogue, drawn, row + side, column);
+                ASSERT_NE(other, nullptr);
+                EXPECT_EQ(tile.edges.coarser[edge], other->tile.level - tile.tile.level);
             }
         }
     }
+    EXPECT_GT(coarsened, 100) << "too easy to judge by";
 }
 
-TEST(Cut, no_tile_is_more_than_six_levels_finer_than_its_neighbour) {
+TEST(Cut, no_vertices_are_more_than_six_levels_coarser_than_a_tile_that_they_touch) {
     const FakeTerrain terrain(16385, 16385);  // nine levels
     const TileCatalogue catalogue(terrain);
     ASSERT_EQ(catalogue.pyramid().root().level, 8);
@@ -248,21 +285,27 @@ TEST(Cut, no_tile_is_more_than_six_levels_finer_than_its_neighbour) {
         [](const TileId&) { return 1.0; });
     EXPECT_EQ(std::ranges::min(tree.leaves(), {}, &TileId::level).level, 0);
     CutBuilder cut(catalogue);
-    const auto resident_but = [](int level) {
-        return [level](const TileId& tile) { return tile.level != level; };
-    };
-    for (const int missing : {-1, 1, 2}) {
-        const auto drawn = cut.build(tree, resident_but(missing));
+    const auto most_coarser = [&](const auto& resident) {
+        const auto drawn = cut.build(tree, resident);
         expect_covered_once(catalogue, drawn);
         int most = 0;
         for (const DrawnTile& tile : drawn) {
-            most = std::max(most, std::ranges::max(tile.edges.coarser));
-            EXPECT_NE(tile.tile.level, missing);
+            most = std::max({most, tile.coarsened, std::ranges::max(tile.edges.coarser)});
         }
-        EXPECT_LE(most, kMostCoarser);
-        if (missing < 0) {
-            EXPECT_EQ(most, kMostCoarser) << "no more than needed gives way";
-        }
+        return most;
+    };
+    EXPECT_EQ(most_coarser([](const TileId&) { return true; }), kMostCoarser)
+        << "no more than needed gives way";
+    for (int missing = 0; missing < 8; ++missing) {
+        EXPECT_LE(most_coarser([&](const TileId& tile) { return tile.level != missing; }),
+                  kMostCoarser);
+        EXPECT_LE(most_coarser([&](const TileId& tile) { return tile.level > missing; }),
+                  kMostCoarser);
+        // One tile beside the path alone has nothing nearer than the root.
+        EXPECT_LE(most_coarser([&](const TileId& tile) {
+                      return tile.level >= 8 || tile.row == tile.column;
+                  }),
+                  kMostCoarser);
     }
 }
 
