@@ -8,7 +8,8 @@ layout(location = 0) out vec4 bounds;  // -(least column, least row), greatest c
 
 void main() {
     // A texel stands for the ground between its neighbours' rays, which near the horizon is far more than a
-    // sample; more than a tile would be guesswork.
-    vec2 footprint = min(fwidth(place), vec2(tile_side));
+    // sample; more than a tile would be guesswork. An eighth of a tile is for peaks that rise into view between
+    // the vertices that are drawn here.
+    vec2 footprint = min(fwidth(place), vec2(tile_side)) + tile_side / 8.0;
     bounds = vec4(footprint - place, place + footprint);
 }

@@ -26,7 +26,8 @@ TEST_P(Watertight, base_mesh_far_away_at_a_huge_tolerance) {
 
 INSTANTIATE_TEST_SUITE_P(methods, Watertight,
                          testing::Combine(testing::Values("lindstrom", "hybrid-patches",
-                                                          "static-patches"),
+                                                          "static-patches", "dltq", "sltq-cpu",
+                                                          "fu"),
                                           testing::ValuesIn(kGrounds)),
                          [](const auto& chosen) {
                              return test_name(std::string(std::get<0>(chosen.param)) + "_" +

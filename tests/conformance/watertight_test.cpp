@@ -49,7 +49,7 @@ std::string name_of(const testing::TestParamInfo<Cell>& chosen) {
     const Cell& cell = chosen.param;
     return test_name(fmt::format("{} {} {} tau {}{}", cell.method, cell.patch_samples,
                                  cell.ground.name, cell.tau,
-                                 cell.more.empty() ? "" : " accumulated planar"));
+                                 cell.more.empty() ? "" : " " + cell.more));
 }
 
 class Watertight : public WatertightTest, public testing::WithParamInterface<Cell> {};
@@ -73,6 +73,11 @@ INSTANTIATE_TEST_SUITE_P(
         {"hybrid-patches", 65, {"ridged"}, {4}, "--set error=accumulated --set metric=planar"},
         {"lindstrom", 0, {"puget"}, {16}},
         {"hybrid-patches", 65, {"puget"}, {16}},
+        {"sltq-cpu", 0, kMost, {1, 16}, "--set separate_error=true"},
+        {"sltq-cpu", 0, {"ridged_oblong", "puget"}, {16}, "--set separate_error=true"},
+        {"dltq", 0, {"bump", "step", "ridged_oblong"}, {4}, "--set separate_error=true"},
+        {"dltq", 0, {"puget"}, {100}},
+        {"fu", 0, {"ridged", "ridged_odd", "ridged_oblong", "puget"}, {16}},
     })),
     name_of);
 
@@ -92,6 +97,8 @@ INSTANTIATE_TEST_SUITE_P(chosen, BaseMesh,
                              {"static-patches", 65, kFew, {1000}},
                              {"hybrid-patches", 9, {"step"}, {1000}},
                              {"static-patches", 9, {"step"}, {1000}},
+                             {"dltq", 0, kFew, {1000}},
+                             {"fu", 0, {"step"}, {1000}},
                          })),
                          name_of);
 
