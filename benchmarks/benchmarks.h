@@ -62,13 +62,16 @@ void patches_cost(const Options& options);
 /// `store`: building, reading and verifying a tiled store of the terrain, float32 and 16 bits, in a
 /// temporary folder.
 void store_cost(const Options& options);
-/// `blocks`: multi-context's errors pass, read-backs and draw calls, from 1025 to 4097 a side, up to
-/// `size`; needs a device.
+/// `blocks`: multi-context's errors pass, read-backs and draw calls, from 1025 to 4097 a side, up
+/// to `size`; needs a device.
 void blocks_cost(const Options& options);
 
-/// `staleness`: multi-context's errors over one terrain, with errors of an eye some way behind; needs
-/// a device.
+/// `staleness`: multi-context's errors over one terrain, with errors of an eye some way behind;
+/// needs a device.
 void staleness_cost(const Options& options);
+/// `tiles`: how the tile quadtrees select, from 1025 a side up to `size` or the terrain's, and what
+/// one number for error and height costs in triangles; needs a device.
+void tiles_cost(const Options& options);
 
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();

@@ -40,9 +40,9 @@ class Streaming : public testing::Test {
 protected:
     Streaming() { terrain.height = height_of; }
 
-    void start(int slots, int uploads = 100) {
+    void start(int slots, int uploads = 100, int threads = 2) {
         streamer.emplace(terrain, TileStreamerOptions{.slots = slots,
-                                                      .loader_threads = 2,
+                                                      .loader_threads = threads,
                                                       .uploads_per_frame = uploads});
         streamer->upload(gl.device, "test: tiles");
     }
@@ -99,8 +99,7 @@ TEST_F(Streaming, what_is_wanted_stays_and_what_was_wanted_longest_ago_goes) {
 }
 
 TEST_F(Streaming, ancestors_come_first_and_only_where_the_leaves_leave_room) {
-    start(8);
-    terrain.before_read = [](const TileId&) { std::this_thread::sleep_for(1ms); };
+    start(8, 100, 1);
     const std::vector<TileId> leaves = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 1, 1}};
     update(leaves, {{3, 0, 0}, {2, 0, 0}, {1, 0, 0}});
     const std::vector<TileId> read = terrain.read_so_far();
