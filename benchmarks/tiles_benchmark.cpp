@@ -1,6 +1,6 @@
-// The visible tile selection of Yang et al. 2016, table 1: by one tree on the CPU, by one tree and by
-// two layers on the GPU, and how each grows with the terrain; and figure 9's question, what a tile's
-// error costs in triangles when the height of its cuboid is stored in its place.
+// The visible tile selection of Yang et al. 2016, table 1: by one tree on the CPU, by one tree and
+// by two layers on the GPU, and how each grows with the terrain; and figure 9's question, what a
+// tile's error costs in triangles when the height of its cuboid is stored in its place.
 //
 // Terrains of several sizes have the same spacing, so a larger one reaches farther to the horizon.
 // Selection is all of `select` with the visible region and the decisions waited for (sync), over
@@ -59,16 +59,15 @@ struct Selected {
     double judged = 0, drawn = 0, refused = 0;
 };
 
-Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain,
-                     const char* method, run::Settings settings, int frames) {
+Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain, const char* method,
+                     run::Settings settings, int frames) {
     settings.emplace_back("tau", kTau);
     settings.emplace_back("pool_tiles", "2048");
     settings.emplace_back("uploads_per_frame", "2048");
     settings.emplace_back("prefetch", "0");
     run::VitalSigns signs;
-    run::Stage stage({terrain, run::default_plugin_folder() / "tile_quadtree.so", method, settings,
-                      ""},
-                     signs);
+    run::Stage stage(
+        {terrain, run::default_plugin_folder() / "tile_quadtree.so", method, settings, ""}, signs);
     stage.prepare();
     stage.upload();
     stage.resize({640, 480});
@@ -121,7 +120,8 @@ void tiles_cost(const Options& options) {
     fmt::print("tiles, {}: tau {}, {} frames of 640 x 480, selection waited for\n",
                whole->info().name, kTau, options.frames);
     fmt::print(
-        "   size | sltq-cpu ms  tiles judged | sltq-gpu ms  judged | dltq ms  judged | dltq prune ms "
+        "   size | sltq-cpu ms  tiles judged | sltq-gpu ms  judged | dltq ms  judged | dltq prune "
+        "ms "
         " judged | collecting, one tree / two layers, all tiles ms\n");
     struct Row {
         double cpu, gpu, layers;
@@ -142,7 +142,8 @@ void tiles_cost(const Options& options) {
                                                  visible);
         });
         const double two_ms = collecting_ms([&](std::vector<TileId>& visible) {
-            tree.collect(region, [](const TileId&) { return true; }, visible);
+            tree.collect(
+                region, [](const TileId&) { return true; }, visible);
         });
         fmt::print(
             "  {:5} | {:11.3f} {:13.0f} | {:11.3f} {:7.0f} | {:7.3f} {:7.0f} | {:13.3f} {:7.0f} | "
@@ -168,7 +169,8 @@ void tiles_cost(const Options& options) {
         select_over(terrain, "sltq-cpu", {{"separate_error", "true"}}, options.frames);
     const Selected fu = select_over(terrain, "fu", {{"sync", "true"}}, options.frames);
     fmt::print(
-        "  1025, tau {}: {:.1f} tiles with one number for error and height, {:.1f} with separate_error, "
+        "  1025, tau {}: {:.1f} tiles with one number for error and height, {:.1f} with "
+        "separate_error, "
         "{:.1f} by fu\n",
         kTau, one.drawn, separate.drawn, fu.drawn);
 }

@@ -21,9 +21,12 @@ public:
     std::function<void(const TileId&)> before_read = [](const TileId&) {};
     std::function<float(int row, int column)> height = [](int, int) { return 0.0F; };
 
-    FakeTerrain(int rows, int columns, Summary summary = [](const TileId&) {
-        return TileSummary{0, 0, 0};
-    })
+    FakeTerrain(
+        int rows, int columns,
+        Summary summary =
+            [](const TileId&) {
+                return TileSummary{0, 0, 0};
+            })
         : summary_(std::move(summary)) {
         info_.name = "fake";
         info_.rows = rows;
@@ -56,8 +59,7 @@ private:
             for (int column = 0; column < kTileSamples; ++column) {
                 heights[i++] = height(
                     std::min((tile.row * kTileCells + row) << tile.level, info_.rows - 1),
-                    std::min((tile.column * kTileCells + column) << tile.level,
-                             info_.columns - 1));
+                    std::min((tile.column * kTileCells + column) << tile.level, info_.columns - 1));
             }
         }
     }

@@ -60,9 +60,9 @@ bool TileStreamer::write(const LoadedTile& loaded, std::uint64_t time) {
 void TileStreamer::require_room(std::span<const TileId> leaves) const {
     const auto count = std::ssize(leaves) - std::ranges::count(leaves, pyramid_.root());
     if (count < slots()) return;
-    throw ContractError(fmt::format(
-        "TileStreamer: {} leaves besides the root; a pool of {} slots has room for {}", count,
-        slots(), slots() - 1));
+    throw ContractError(
+        fmt::format("TileStreamer: {} leaves besides the root; a pool of {} slots has room for {}",
+                    count, slots(), slots() - 1));
 }
 
 void TileStreamer::update(const TileWishes& wishes) {
@@ -73,8 +73,8 @@ void TileStreamer::update(const TileWishes& wishes) {
     counts_.hits += wishes.leaves.size() - leaves.size();
     std::vector<TileId> ancestors = touch(wishes.ancestors, time_of_others());
     // The root has its slot for good; an ancestor that would take a leaf's is not worth reading.
-    const std::size_t room = std::size_t(slots()) - 1 - std::min(wishes.leaves.size(),
-                                                                 std::size_t(slots()) - 1);
+    const std::size_t room =
+        std::size_t(slots()) - 1 - std::min(wishes.leaves.size(), std::size_t(slots()) - 1);
     const std::size_t kept = wishes.ancestors.size() - ancestors.size();
     ancestors.resize(std::min(ancestors.size(), room - std::min(room, kept)));
     std::vector<TileId> prefetch = touch(wishes.prefetch, time_of_others());

@@ -45,8 +45,8 @@ struct NestedSphere {
                 double radius = glm::length(glm::max(box.high - middle, middle - box.low));
                 catalogue.for_each_child(tile, [&](const TileId& child) {
                     const NestedSphere& inner = spheres[catalogue.index(child)];
-                    radius = std::max(radius, glm::distance(middle, centre(child)) +
-                                                  double(inner.radius));
+                    radius = std::max(radius,
+                                      glm::distance(middle, centre(child)) + double(inner.radius));
                     sphere.error = std::max(sphere.error, inner.error);
                 });
                 // Upward, so that rounding leaves nothing outside; the second step is for the

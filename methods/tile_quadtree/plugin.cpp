@@ -36,15 +36,24 @@ constexpr ParamSpec kRegionPixels = integer_param(
     "region_pixels", 64, 8, 512, "edge of the target into which the visible region is drawn");
 
 constexpr ParamSpec kDltqParams[] = {
-    kTau,     kSeparateError, kCracks, kCulling,      kPoolTiles, kLoaderThreads, kUploads,
-    kPrefetch, kEvaluate,      kSync,   kRegionPixels,
+    kTau,
+    kSeparateError,
+    kCracks,
+    kCulling,
+    kPoolTiles,
+    kLoaderThreads,
+    kUploads,
+    kPrefetch,
+    kEvaluate,
+    kSync,
+    kRegionPixels,
     integer_param("upper_levels", 4, 0, 12,
                   "levels below the root that the upper tree has; the whole tree's where fewer"),
     boolean_param("prune", false,
                   "leaves out lower trees that the metric, on the CPU, does not refine; false: as "
                   "in the paper all whose root is visible")};
-constexpr ParamSpec kSltqGpuParams[] = {kTau,       kSeparateError, kCracks,  kCulling,
-                                        kPoolTiles, kLoaderThreads, kUploads, kPrefetch,
+constexpr ParamSpec kSltqGpuParams[] = {kTau,       kSeparateError, kCracks,      kCulling,
+                                        kPoolTiles, kLoaderThreads, kUploads,     kPrefetch,
                                         kEvaluate,  kSync,          kRegionPixels};
 constexpr ParamSpec kSltqCpuParams[] = {kTau,       kSeparateError, kCracks,  kCulling,
                                         kPoolTiles, kLoaderThreads, kUploads, kPrefetch};

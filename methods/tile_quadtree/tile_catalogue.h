@@ -14,9 +14,7 @@ struct SampleBox {
     int first_row = 0, first_column = 0;
     int last_row = -1, last_column = -1;
 
-    [[nodiscard]] bool empty() const {
-        return first_row > last_row || first_column > last_column;
-    }
+    [[nodiscard]] bool empty() const { return first_row > last_row || first_column > last_column; }
     [[nodiscard]] bool touches(const SampleBox& other) const {
         return !empty() && !other.empty() && first_row <= other.last_row &&
                other.first_row <= last_row && first_column <= other.last_column &&

@@ -10,8 +10,8 @@
 
 namespace lodbench::tile_quadtree {
 
-/// Neighbours have vertices at most this many levels coarser: 64 cells are then one step of theirs or
-/// more, so that no corner of a tile lies between two of their vertices.
+/// Neighbours have vertices at most this many levels coarser: 64 cells are then one step of theirs
+/// or more, so that no corner of a tile lies between two of their vertices.
 inline constexpr int kMostCoarser = 6;
 
 /// How many levels coarser than the tile's level the vertices across an edge are; 0 where they are
@@ -122,16 +122,13 @@ private:
         return marks_[catalogue_.index(tile)].build == mark_;
     }
 
-    /// A line that tiles share is kept by one of them: by the largest, of equals by the northern or
-    /// western one. All that lie along it read its level there.
+    /// The level along a line that tiles share is kept by the largest of them; of two equal ones,
+    /// which have the line for themselves, by the other.
     std::uint8_t& edge_level(const TileId& tile, std::size_t edge) {
         TileId other{tile.level, tile.row + kAcross[edge][0], tile.column + kAcross[edge][1]};
-        const bool behind = edge >= 2;  // east or south of the tile
         for (; catalogue_.pyramid().contains(other);
              other = {other.level + 1, other.row / 2, other.column / 2}) {
-            if (!is_drawn(other)) continue;
-            if (other.level == tile.level && behind) break;
-            return marks_[catalogue_.index(other)].edge_level[3 - edge];
+            if (is_drawn(other)) return marks_[catalogue_.index(other)].edge_level[3 - edge];
         }
         return marks_[catalogue_.index(tile)].edge_level[edge];
     }

@@ -63,8 +63,7 @@ public:
         summary_texture_.bind(2);
         program_.set("scale", float(scale));
         if (by_compute_) {
-            glBindImageTexture(0, decision_texture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
-                               GL_R8UI);
+            glBindImageTexture(0, decision_texture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
             device_->dispatch_compute(program_, kRow / 64, GLuint(rows), 1);
             glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
         } else {

@@ -13,15 +13,15 @@ namespace lodbench::tile_quadtree {
 /// One index buffer for all that is drawn of tiles.
 struct TileMesh {
     std::vector<std::uint16_t> indices;
-    int tile_count = 0;   ///< the first indices: all cells
-    int skirt_count = 0;  ///< those behind them: the upright strip
+    int tile_count = 0;                      ///< the first indices: all cells
+    int skirt_count = 0;                     ///< those behind them: the upright strip
     int coarse_first = 0, coarse_count = 0;  ///< every kCoarseStep-th vertex alone
 };
 
 inline constexpr int kCoarseStep = 4;
 
-/// The cells of every `step`-th vertex, as longest-edge bisection cuts them: a cell's diagonal joins
-/// a vertex with even row and column to one with odd ones (in steps), so that TileSummary's
+/// The cells of every `step`-th vertex, as longest-edge bisection cuts them: a cell's diagonal
+/// joins a vertex with even row and column to one with odd ones (in steps), so that TileSummary's
 /// midpoint_error is the error of these triangles; counter-clockwise seen from above. So a corner
 /// cell's diagonal leads into the tile, and no triangle has all its vertices on the border.
 /// In bands of eight columns, from north to south: a vertex is reused while it is still in the
@@ -59,12 +59,10 @@ inline void add_skirt(std::vector<std::uint16_t>& indices) {
             default: return std::uint16_t((kTileCells - along) * kTileSamples);
         }
     };
-    const auto foot = [](int i) {
-        return std::uint16_t(int(kTileSampleCount) + i % kRing);
-    };
+    const auto foot = [](int i) { return std::uint16_t(int(kTileSampleCount) + i % kRing); };
     for (int i = 0; i < kRing; ++i) {
-        indices.insert(indices.end(), {top(i), top(i + 1), foot(i), foot(i), top(i + 1),
-                                       foot(i + 1)});
+        indices.insert(indices.end(),
+                       {top(i), top(i + 1), foot(i), foot(i), top(i + 1), foot(i + 1)});
     }
 }
 

@@ -37,9 +37,9 @@ struct Options {
 
     Options(Kind method, const Params& params)
         : kind(method),
-          metric(method == Kind::fu                  ? MetricKind::spheres
+          metric(method == Kind::fu                 ? MetricKind::spheres
                  : params.boolean("separate_error") ? MetricKind::cuboid_separate
-                                                     : MetricKind::cuboid),
+                                                    : MetricKind::cuboid),
           tau(params.real("tau")),
           culling(params.boolean("culling")),
           by_compute(on_gpu() && params.choice("evaluate") == "compute"),
@@ -111,8 +111,8 @@ public:
                 if (scene_->region_arrived()) take_region(view);
                 if (judges_.arrived()) take_decisions();
             }
-            tree = tree_by_decisions(*catalogue_, *metric_, *decisions_, region_, view,
-                                     most_leaves());
+            tree =
+                tree_by_decisions(*catalogue_, *metric_, *decisions_, region_, view, most_leaves());
         }
         const glm::dvec3 step = before ? camera.position - *before : glm::dvec3(0);
         stream(tree, step);
@@ -209,8 +209,7 @@ private:
     /// Draws what is resident and asks for what is not. `step`: the way from the frame before,
     /// metres.
     void stream(const TileTree& tree, const glm::dvec3& step) {
-        const std::vector<DrawnTile> wanted =
-            cut_->build(tree, [](const TileId&) { return true; });
+        const std::vector<DrawnTile> wanted = cut_->build(tree, [](const TileId&) { return true; });
         note_needed(wanted);
         std::vector<TileId> leaves, ancestors, soon;
         for (const DrawnTile& tile : wanted) leaves.push_back(tile.tile);
@@ -231,8 +230,8 @@ private:
         ancestors.erase(again, end);
         if (counts_.missing == 0) soon = needed_soon(step);
         streamer_->update({leaves, ancestors, soon});
-        freeze(cut_->build(tree,
-                           [this](const TileId& tile) { return streamer_->slot(tile).has_value(); }),
+        freeze(cut_->build(
+                   tree, [this](const TileId& tile) { return streamer_->slot(tile).has_value(); }),
                tree);
     }
 
@@ -259,8 +258,8 @@ private:
             region_ = scene_->region(*catalogue_);
             ask_decisions(view);
             take_decisions();
-            tree = tree_by_decisions(*catalogue_, *metric_, *decisions_, region_, view,
-                                     most_leaves());
+            tree =
+                tree_by_decisions(*catalogue_, *metric_, *decisions_, region_, view, most_leaves());
         }
         counts_.missing = 0;
         load_and_freeze(tree);

@@ -27,8 +27,8 @@ void TileScene::upload(gl::Device& device, std::span<const gl::ShaderSource> sha
                     {{GL_VERTEX_SHADER, "region.vert"}, {GL_FRAGMENT_SHADER, "region.frag"}});
     region_program_.set("widening", kWidening);
     mesh_ = tile_mesh();
-    indices_ = gl::Buffer(device, "tile_quadtree: cells",
-                          std::span<const std::uint16_t>(mesh_.indices));
+    indices_ =
+        gl::Buffer(device, "tile_quadtree: cells", std::span<const std::uint16_t>(mesh_.indices));
     instances_ = gl::Buffer(device, "tile_quadtree: drawn tiles",
                             std::size_t(most_tiles) * sizeof(Instance));
     vertices_ = gl::VertexArray(device, "tile_quadtree");
@@ -78,8 +78,7 @@ void TileScene::freeze(std::span<const DrawnTile> tiles, const TileCatalogue& ca
 void TileScene::draw(const common::TileStreamer& streamer) {
     if (count_ == 0) return;
     streamer.heights().bind(0);
-    const int indices =
-        mesh_.tile_count + (cracks_ == Cracks::skirt ? mesh_.skirt_count : 0);
+    const int indices = mesh_.tile_count + (cracks_ == Cracks::skirt ? mesh_.skirt_count : 0);
     device_->draw_elements(program_, vertices_, GL_TRIANGLES, indices, GL_UNSIGNED_SHORT, 0,
                            count_);
 }

@@ -16,7 +16,7 @@ namespace lodbench::tile_quadtree {
 /// A camera, and what there is to decide for it.
 struct TileView {
     glm::dvec3 eye{0.0};
-    double scale = 1;  ///< lambda / tau
+    double scale = 1;                            ///< lambda / tau
     std::optional<common::ViewFrustum> frustum;  ///< without one everything is in view
 
     TileView(const Camera& camera, double tau, bool culling)

@@ -84,7 +84,8 @@ protected:
             << "tau " << tau << ", frame " << frame << ": " << checked.output;
     }
 
-    /// Far away at a huge tolerance nothing is refined: four triangles, four whole patches or a tile.
+    /// Far away at a huge tolerance nothing is refined: four triangles, four whole patches or a
+    /// tile.
     void expect_base_mesh(const std::string& method, const std::string& settings,
                           const Ground& ground, int patch_samples) {
         const std::string far = scenario(ground.terrain, "[0, 0, 9e7]", "[0, 0, 1e8]", -90);

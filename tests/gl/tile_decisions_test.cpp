@@ -71,8 +71,8 @@ Camera random_camera(const TerrainInfo& info, std::mt19937& random) {
     return camera;
 }
 
-class Decisions
-    : public testing::TestWithParam<std::tuple<const char*, MetricKind, const char*>> {};
+class Decisions : public testing::TestWithParam<std::tuple<const char*, MetricKind, const char*>> {
+};
 
 TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) {
     const auto& [name, kind, evaluate] = GetParam();
@@ -108,8 +108,9 @@ TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) 
             if (by_cpu == (splits[t] != 0)) continue;
             ++differing;
             const Judgement judgement = metric.judge(tiles[t], camera.position, scale);
-            // The GPU subtracts floats of the size of the tile's farthest coordinate, a few roundings
-            // of 2^-24 each, and so does the reach of its factors. Heights have an ulp of their own.
+            // The GPU subtracts floats of the size of the tile's farthest coordinate, a few
+            // roundings of 2^-24 each, and so does the reach of its factors. Heights have an ulp of
+            // their own.
             const common::Box box = catalogue.box(tiles[t]);
             const double size = judgement.reach + glm::length(box.low - camera.position) +
                                 glm::length(box.high - camera.position) +
@@ -118,7 +119,8 @@ TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) 
                 << "level " << tiles[t].level << ", row " << tiles[t].row << ", column "
                 << tiles[t].column << ", camera " << i;
             fmt::print(
-                "  camera {}, tile (level {}, row {}, column {}): reach {:.9g} m, distance {:.9g} m; "
+                "  camera {}, tile (level {}, row {}, column {}): reach {:.9g} m, distance {:.9g} "
+                "m; "
                 "the CPU {} it, the GPU does otherwise\n",
                 i, tiles[t].level, tiles[t].row, tiles[t].column, judgement.reach,
                 judgement.distance, by_cpu ? "splits" : "keeps");
@@ -135,8 +137,8 @@ TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) 
 std::string name_of(
     const testing::TestParamInfo<std::tuple<const char*, MetricKind, const char*>>& chosen) {
     constexpr const char* kKinds[] = {"cuboid", "separate", "spheres"};
-    return fmt::format("{}_{}_{}", std::get<0>(chosen.param), kKinds[int(std::get<1>(chosen.param))],
-                       std::get<2>(chosen.param));
+    return fmt::format("{}_{}_{}", std::get<0>(chosen.param),
+                       kKinds[int(std::get<1>(chosen.param))], std::get<2>(chosen.param));
 }
 
 INSTANTIATE_TEST_SUITE_P(all, Decisions,

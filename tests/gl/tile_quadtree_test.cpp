@@ -1,5 +1,5 @@
-// dltq, sltq-gpu, sltq-cpu and fu as they are drawn: alike where they should be, without cracks, and
-// never waiting for a tile.
+// dltq, sltq-gpu, sltq-cpu and fu as they are drawn: alike where they should be, without cracks,
+// and never waiting for a tile.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -32,9 +32,9 @@ std::shared_ptr<const terrain::HeightField> ridged(int rows, int columns) {
 }
 
 Camera low_camera(const TerrainInfo& info, double heading = 40) {
-    Camera camera = camera_at({info.origin + 0.2 * (info.extent_max() - info.extent_min()),
-                               info.max_height + 50},
-                              heading, -12);
+    Camera camera = camera_at(
+        {info.origin + 0.2 * (info.extent_max() - info.extent_min()), info.max_height + 50},
+        heading, -12);
     camera.viewport = {320, 240};
     return camera;
 }
@@ -156,8 +156,11 @@ INSTANTIATE_TEST_SUITE_P(all, WhileTilesAreMissing, testing::Values("dltq", "slt
 TEST_P(WhileTilesAreMissing, what_stands_in_for_them_is_watertight_and_covers_the_terrain) {
     if (!has_numpy()) GTEST_SKIP() << "no numpy";
     const auto terrain = ridged(700, 513);
-    Settings settings = {{"tau", "4"},      {"culling", "false"},         {"uploads_per_frame", "3"},
-                         {"prefetch", "0"}, {"loader_threads", "1"}};
+    Settings settings = {{"tau", "4"},
+                         {"culling", "false"},
+                         {"uploads_per_frame", "3"},
+                         {"prefetch", "0"},
+                         {"loader_threads", "1"}};
     if (std::string(GetParam()) != "fu") settings.emplace_back("separate_error", "true");
     Flight flight(terrain, "tile_quadtree", GetParam(), settings);
     int frames_with_gaps = 0, checked = 0;
@@ -265,9 +268,10 @@ TEST_P(TileMethods, a_tile_that_cannot_be_read_ends_the_frame_with_the_terrains_
     FakeTerrain terrain(1025, 1025, rough);
     terrain.before_read = [](const TileId& tile) {
         if (tile.level == 0) {
-            throw EnvironmentError(fmt::format("moon.tiles: tile (level 0, row {}, column {}): "
-                                               "checksum 1, expected 2",
-                                               tile.row, tile.column));
+            throw EnvironmentError(
+                fmt::format("moon.tiles: tile (level 0, row {}, column {}): "
+                            "checksum 1, expected 2",
+                            tile.row, tile.column));
         }
     };
     const Camera camera = low_camera(terrain.info());

@@ -31,8 +31,7 @@ std::vector<float> layer(const TileStreamer& streamer, int slot) {
     std::vector<float> heights(kTileSampleCount);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTextureSubImage(streamer.heights().name(), 0, 0, 0, slot, kTileSamples, kTileSamples, 1,
-                         GL_RED, GL_FLOAT, GLsizei(heights.size() * sizeof(float)),
-                         heights.data());
+                         GL_RED, GL_FLOAT, GLsizei(heights.size() * sizeof(float)), heights.data());
     return heights;
 }
 
@@ -41,9 +40,9 @@ protected:
     Streaming() { terrain.height = height_of; }
 
     void start(int slots, int uploads = 100, int threads = 2) {
-        streamer.emplace(terrain, TileStreamerOptions{.slots = slots,
-                                                      .loader_threads = threads,
-                                                      .uploads_per_frame = uploads});
+        streamer.emplace(
+            terrain, TileStreamerOptions{
+                         .slots = slots, .loader_threads = threads, .uploads_per_frame = uploads});
         streamer->upload(gl.device, "test: tiles");
     }
     void TearDown() override {
@@ -106,7 +105,8 @@ TEST_F(Streaming, ancestors_come_first_and_only_where_the_leaves_leave_room) {
     ASSERT_EQ(read.size(), 8U);
     EXPECT_EQ(read[1].level, 3);
     // Eight slots: the root, six leaves, one more.
-    const std::vector<TileId> more = {{0, 4, 0}, {0, 4, 1}, {0, 5, 0}, {0, 5, 1}, {0, 4, 2}, {0, 4, 3}};
+    const std::vector<TileId> more = {{0, 4, 0}, {0, 4, 1}, {0, 5, 0},
+                                      {0, 5, 1}, {0, 4, 2}, {0, 4, 3}};
     update(more, {{3, 0, 0}, {2, 1, 0}, {1, 2, 0}});
     for (const TileId& tile : more) expect_right(tile);
     EXPECT_EQ(streamer->resident(), 8);
@@ -192,7 +192,8 @@ SampleBox samples_in_view(const terrain::HeightField& terrain, const Camera& cam
     for (int row = 0; row < info.rows; ++row) {
         for (int column = 0; column < info.columns; ++column) {
             const float height =
-                terrain.samples()[std::size_t(row) * std::size_t(info.columns) + std::size_t(column)];
+                terrain
+                    .samples()[std::size_t(row) * std::size_t(info.columns) + std::size_t(column)];
             const glm::dvec3 there =
                 glm::dvec3(info.position(row, column), height) - camera.position;
             const double depth = glm::dot(there, camera.forward());
@@ -270,8 +271,8 @@ TEST(VisibleRegion, holds_all_ground_in_view_hidden_or_not_and_not_a_tile_more) 
     }
     EXPECT_GT(seen, 30) << "too easy to judge by";
     // Nothing but sky.
-    const gl::Frozen sky = gl::make_frozen(
-        test::camera_at({info.origin, info.max_height + 100}, 0, 80, 0, 40), info);
+    const gl::Frozen sky =
+        gl::make_frozen(test::camera_at({info.origin, info.max_height + 100}, 0, 80, 0, 40), info);
     frozen.write(0, sizeof sky, &sky);
     scene.ask_region(streamer);
     EXPECT_TRUE(scene.region(catalogue).empty());

@@ -53,15 +53,17 @@ TEST(Cuboid, is_as_high_as_the_error_where_that_is_greater) {
     const TileCatalogue catalogue(terrain);
     EXPECT_EQ(TileMetric(catalogue, MetricKind::cuboid).judge(kRoot, {640, 640, 160}, 1).distance,
               10);
-    EXPECT_EQ(
-        TileMetric(catalogue, MetricKind::cuboid_separate).judge(kRoot, {640, 640, 160}, 1).distance,
-        20);
+    EXPECT_EQ(TileMetric(catalogue, MetricKind::cuboid_separate)
+                  .judge(kRoot, {640, 640, 160}, 1)
+                  .distance,
+              20);
 }
 
 TEST(Splitting, is_where_the_reach_exceeds_the_distance_and_inside_wherever_there_is_an_error) {
     const TileCatalogue catalogue = two_levels();
     const TileMetric metric(catalogue, MetricKind::cuboid_separate);
-    // 3 m of error, 10 m above: at 10 / 3 pixels a unit of tangent and pixel of tolerance it is even.
+    // 3 m of error, 10 m above: at 10 / 3 pixels a unit of tangent and pixel of tolerance it is
+    // even.
     EXPECT_FALSE(metric.splits(kRoot, {640, 640, 150}, 10.0 / 3));
     EXPECT_TRUE(metric.splits(kRoot, {640, 640, 150}, 10.0 / 3 * (1 + 1e-12)));
     EXPECT_TRUE(metric.splits(kRoot, {640, 640, 120}, 1e-300)) << "inside";
@@ -131,9 +133,9 @@ TEST_P(NestedSpheres, contain_their_samples_and_their_childrens_spheres_and_satu
                     for (int c = samples.first_column; c <= samples.last_column; ++c) {
                         float height = 0;
                         terrain->read({r, c, 1, 1}, {&height, 1});
-                        EXPECT_LE(glm::distance(centre(tile),
-                                                {catalogue.info().position(r, c), height}),
-                                  double(sphere.radius));
+                        EXPECT_LE(
+                            glm::distance(centre(tile), {catalogue.info().position(r, c), height}),
+                            double(sphere.radius));
                     }
                 }
             }
@@ -162,7 +164,8 @@ INSTANTIATE_TEST_SUITE_P(terrains, NestedSpheres,
                                          std::pair(100, 300), std::pair(300, 66)));
 
 TEST(Cuboid, is_not_nested_an_unsaturated_child_may_split_where_its_parent_does_not) {
-    // What the paper's metric gives up for its triangles: here the child's error is the greater one.
+    // What the paper's metric gives up for its triangles: here the child's error is the greater
+    // one.
     const FakeTerrain terrain(257, 257, [](const TileId& tile) {
         return TileSummary{0, 10, tile.level == 1 ? 5.0F : 1.0F};
     });
