@@ -154,6 +154,7 @@ void tiles_cost(const Options& options) {
         rows.push_back({size, {cpu.ms, gpu.ms, layers.ms}});
         std::fflush(stdout);
     }
+    if (rows.empty()) return;
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const Row &small = rows[i - 1].second, &large = rows[i].second;
         fmt::print("  {} to {}: sltq-cpu x {:.2f}, sltq-gpu x {:.2f}, dltq x {:.2f}\n",
