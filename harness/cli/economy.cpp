@@ -41,7 +41,7 @@ std::string economy_text(const std::vector<Json::Value>& cells) {
             text += fmt::format("|{:-<30}|{:->7}:|{:->10}:|{:->11}:|{:->11}:|{:->11}:|{:->8}:|\n",
                                 "", "", "", "", "", "", "");
         }
-        for (const std::string& failure : group.failures) {
+        for (const std::string& failure : report::failures_of(group)) {
             failures += fmt::format("- {}, {}: {}\n", group.label, group.scenario, failure);
         }
         for (const Json::Value* cell : group.good) {

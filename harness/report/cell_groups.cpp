@@ -2,35 +2,28 @@
 
 #include <fmt/format.h>
 
-#include <map>
-#include <set>
-#include <utility>
+#include <tuple>
 
 #include "report/json.h"
 
 namespace lodbench::report {
+
 namespace {
 
-constexpr const char* kAbsent = "-";
+/// Of each method the parameters that have more than one value among its cells.
+using SweptNames = std::map<std::string, std::set<std::string>>;
 
-std::string value_text(const Json::Value& value) {
-    if (value.isString()) return value.asString();
-    if (value.isBool()) return value.asBool() ? "true" : "false";
-    if (value.isIntegral()) return fmt::format("{}", value.asInt64());
-    return value.isNumeric() ? fmt::format("{}", value.asDouble()) : kAbsent;
-}
-
-/// Names of a method's parameters that have more than one value among its cells.
-std::map<std::string, std::set<std::string>> swept_names(const std::vector<Json::Value>& cells) {
+SweptNames swept_names(const std::vector<Json::Value>& cells) {
     std::map<std::string, std::map<std::string, std::set<std::string>>> values;
     for (const Json::Value& cell : cells) {
         const Json::Value& params = cell["params"];
         if (!params.isObject()) continue;
-        for (const std::string& name : params.getMemberNames()) {
-            values[cell["method"].asString()][name].insert(value_text(params[name]));
+        auto& of_method = values[cell["method"].asString()];
+        for (auto param = params.begin(); param != params.end(); ++param) {
+            of_method[param.name()].insert(value_text(*param));
         }
     }
-    std::map<std::string, std::set<std::string>> swept;
+    SweptNames swept;
     for (const auto& [method, params] : values) {
         for (const auto& [name, texts] : params) {
             if (texts.size() > 1) swept[method].insert(name);
@@ -39,48 +32,73 @@ std::map<std::string, std::set<std::string>> swept_names(const std::vector<Json:
     return swept;
 }
 
-std::string label_of(const Json::Value& cell,
-                     const std::map<std::string, std::set<std::string>>& swept) {
-    std::string label = cell["method"].asString();
-    const auto names = swept.find(label);
-    if (names == swept.end()) return label;
+std::string setting_of(const Json::Value& cell, const SweptNames& swept) {
+    std::string setting;
+    const auto names = swept.find(cell["method"].asString());
+    if (names == swept.end()) return setting;
     for (const std::string& name : names->second) {
-        label += fmt::format(" {}={}", name, value_text(cell["params"][name]));
+        setting += fmt::format("{}{}={}", setting.empty() ? "" : " ", name,
+                               value_text(member_of(cell, "params", name.c_str())));
     }
-    return label;
+    return setting;
 }
 
 }  // namespace
 
-std::vector<double> numbers(const Cells& cells, const char* key, const char* inner) {
+std::vector<std::string> failures_of(const CellGroup& group) {
+    std::vector<std::string> failures;
+    for (const Json::Value* cell : group.cells) {
+        if ((*cell)["status"].asString() == "ok") continue;
+        failures.push_back(fmt::format("{} (repetition {}): {}", (*cell)["status"].asString(),
+                                       (*cell)["repetition"].asInt(),
+                                       (*cell)["reason"].asString()));
+    }
+    return failures;
+}
+
+std::string value_text(const Json::Value& value) {
+    if (value.isString()) return value.asString();
+    if (value.isBool()) return value.asBool() ? "true" : "false";
+    if (value.isIntegral() && value.isInt64()) return fmt::format("{}", value.asInt64());
+    return value.isNumeric() ? fmt::format("{}", value.asDouble()) : "-";
+}
+
+const Json::Value& member_of(const Json::Value& cell, const char* key, const char* inner) {
+    const Json::Value& outer = cell.isObject() ? cell[key] : Json::Value::nullSingleton();
+    if (inner == nullptr) return outer;
+    return outer.isObject() ? outer[inner] : Json::Value::nullSingleton();
+}
+
+std::vector<double> numbers_of(const std::vector<const Json::Value*>& cells, const char* key,
+                               const char* inner) {
     std::vector<double> values;
     for (const Json::Value* cell : cells) {
-        const Json::Value& outer = (*cell)[key];
-        const Json::Value& value = inner == nullptr || !outer.isObject() ? outer : outer[inner];
-        if (const auto number = read_number_or_inf(value)) values.push_back(*number);
+        if (const auto number = read_number_or_inf(member_of(*cell, key, inner))) {
+            values.push_back(*number);
+        }
     }
     return values;
 }
 
 std::vector<CellGroup> group_cells(const std::vector<Json::Value>& cells) {
-    const auto swept = swept_names(cells);
+    const SweptNames swept = swept_names(cells);
     std::map<std::pair<std::string, std::string>, CellGroup> groups;
     for (const Json::Value& cell : cells) {
-        const std::string scenario = cell["scenario"].asString();
-        const std::string label = label_of(cell, swept);
-        CellGroup& group = groups[{scenario, label}];
-        group.scenario = scenario;
-        group.label = label;
-        group.method = cell["method"].asString();
-        if (cell["status"].asString() == "ok") {
-            group.good.push_back(&cell);
-        } else {
-            group.failures.push_back(
-                fmt::format("{} (repetition {}): {}", cell["status"].asString(),
-                            cell["repetition"].asInt(), cell["reason"].asString()));
+        const std::string method = cell["method"].asString();
+        const std::string setting = setting_of(cell, swept);
+        const std::string label = setting.empty() ? method : method + " " + setting;
+        CellGroup& group = groups[{cell["scenario"].asString(), label}];
+        if (group.cells.empty()) {
+            group.scenario = cell["scenario"].asString();
+            group.method = method;
+            group.label = label;
+            group.setting = setting;
         }
+        group.cells.push_back(&cell);
+        if (cell["status"].asString() == "ok") group.good.push_back(&cell);
     }
     std::vector<CellGroup> result;
+    result.reserve(groups.size());
     for (auto& [key, group] : groups) result.push_back(std::move(group));
     return result;
 }

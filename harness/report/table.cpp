@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <utility>
 
 #include "measure/statistics.h"
 #include "report/cell_groups.h"
@@ -17,8 +16,8 @@ namespace {
 constexpr double kMebibyte = 1048576.0;
 constexpr const char* kAbsent = "-";
 
-std::string median(std::vector<double> values, const char* format, double unit = 1) {
-    const auto centre = measure::percentile(values, 0.5);
+std::string median(const std::vector<double>& values, const char* format, double unit = 1) {
+    const auto centre = measure::median(values);
     return centre ? fmt::format(fmt::runtime(format), *centre / unit) : kAbsent;
 }
 
@@ -27,8 +26,8 @@ std::string greatest(const std::vector<double>& values, const char* format, doub
     return fmt::format(fmt::runtime(format), *std::ranges::max_element(values) / unit);
 }
 
-std::string fps_text(const Cells& cells, std::uint64_t seed) {
-    const auto interval = measure::run_interval(numbers(cells, "fps"), seed);
+std::string fps_text(const std::vector<const Json::Value*>& cells, std::uint64_t seed) {
+    const auto interval = measure::run_interval(numbers_of(cells, "fps"), seed);
     if (!interval) return kAbsent;
     return fmt::format("{:.1f} ({:.1f}..{:.1f})", interval->centre, interval->low, interval->high);
 }
@@ -44,22 +43,22 @@ const std::vector<std::string>& table_columns() {
 
 std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uint64_t seed) {
     std::vector<TableRow> rows;
-    for (CellGroup& group : group_cells(cells)) {
-        const Cells& good = group.good;
-        TableRow row{group.scenario, group.label, {}, std::move(group.failures)};
+    for (const CellGroup& group : group_cells(cells)) {
+        TableRow row{group.scenario, group.label, {}, failures_of(group)};
+        const auto& good = group.good;
         row.fields = {fps_text(good, seed),
-                      median(numbers(good, "frame_ms", "median"), "{:.3f}"),
-                      median(numbers(good, "frame_ms", "p90"), "{:.3f}"),
-                      greatest(numbers(good, "frame_ms", "max"), "{:.3f}"),
-                      median(numbers(good, "triangles", "mean"), "{:.0f}"),
-                      median(numbers(good, "prepare_s"), "{:.3f}"),
-                      median(numbers(good, "gpu_bytes"), "{:.1f}", kMebibyte),
-                      greatest(numbers(good, "peak_rss_bytes"), "{:.0f}", kMebibyte),
-                      median(numbers(good, "pixel_error_px", "p999"), "{:.2f}"),
-                      median(numbers(good, "pixel_error_px", "max"), "{:.2f}"),
-                      median(numbers(good, "crack_pixels", "total"), "{:.0f}"),
-                      median(numbers(good, "popping_px", "p999"), "{:.2f}"),
-                      median(numbers(good, "bound_honesty"), "{:.3f}")};
+                      median(numbers_of(good, "frame_ms", "median"), "{:.3f}"),
+                      median(numbers_of(good, "frame_ms", "p90"), "{:.3f}"),
+                      greatest(numbers_of(good, "frame_ms", "max"), "{:.3f}"),
+                      median(numbers_of(good, "triangles", "mean"), "{:.0f}"),
+                      median(numbers_of(good, "prepare_s"), "{:.3f}"),
+                      median(numbers_of(good, "gpu_bytes"), "{:.1f}", kMebibyte),
+                      greatest(numbers_of(good, "peak_rss_bytes"), "{:.0f}", kMebibyte),
+                      median(numbers_of(good, "pixel_error_px", "p999"), "{:.2f}"),
+                      median(numbers_of(good, "pixel_error_px", "max"), "{:.2f}"),
+                      median(numbers_of(good, "crack_pixels", "total"), "{:.0f}"),
+                      median(numbers_of(good, "popping_px", "p999"), "{:.2f}"),
+                      median(numbers_of(good, "bound_honesty"), "{:.3f}")};
         rows.push_back(std::move(row));
     }
     return rows;

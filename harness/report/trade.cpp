@@ -139,12 +139,12 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
                                  const std::map<std::string, std::string>& knobs,
                                  ErrorMetric metric, std::uint64_t seed) {
     std::vector<TradeRow> rows;
-    for (CellGroup& group : group_cells(cells)) {
+    for (const CellGroup& group : group_cells(cells)) {
         TradeRow row;
         row.scenario = group.scenario;
         row.method = group.method;
         row.label = group.label;
-        row.failures = std::move(group.failures);
+        row.failures = failures_of(group);
         const auto knob = knobs.find(group.method);
         std::vector<double> errors;
         for (const Json::Value* cell : group.good) {
@@ -152,10 +152,10 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
             if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
         }
         row.error = measure::median(errors);
-        row.frame_ms = measure::run_interval(numbers(group.good, "frame_ms", "mean"), seed);
-        row.triangles = measure::median(numbers(group.good, "triangles", "mean"));
-        row.gpu_bytes = measure::median(numbers(group.good, "gpu_bytes"));
-        row.prepare_s = measure::median(numbers(group.good, "prepare_s"));
+        row.frame_ms = measure::run_interval(numbers_of(group.good, "frame_ms", "mean"), seed);
+        row.triangles = measure::median(numbers_of(group.good, "triangles", "mean"));
+        row.gpu_bytes = measure::median(numbers_of(group.good, "gpu_bytes"));
+        row.prepare_s = measure::median(numbers_of(group.good, "prepare_s"));
         rows.push_back(std::move(row));
     }
     std::ranges::stable_sort(rows, {}, [](const TradeRow& row) {
