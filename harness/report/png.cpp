@@ -30,4 +30,22 @@ void write_png(const std::filesystem::path& path, int width, int height,
     write_whole(path, file);
 }
 
+std::optional<Image> read_png(std::span<const std::uint8_t> file) {
+    constexpr png_uint_32 kLargest = 8192;  // pixels a side
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_memory(&header, file.data(), file.size()) == 0 ||
+        header.width > kLargest || header.height > kLargest) {
+        png_image_free(&header);
+        return std::nullopt;
+    }
+    header.format = PNG_FORMAT_RGB;
+    Image image{int(header.width), int(header.height), {}};
+    image.rgb.resize(PNG_IMAGE_SIZE(header));
+    if (png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr) == 0) {
+        return std::nullopt;
+    }
+    return image;
+}
+
 }  // namespace lodbench::report

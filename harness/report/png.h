@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
+
+#include "report/canvas.h"
 
 namespace lodbench::report {
 
@@ -10,5 +13,8 @@ namespace lodbench::report {
 /// Throws EnvironmentError with the file and the system's words.
 void write_png(const std::filesystem::path& path, int width, int height,
                std::span<const std::uint8_t> rgb);
+
+/// The picture in a PNG file's bytes as 8-bit RGB; nothing where they are none.
+[[nodiscard]] std::optional<Image> read_png(std::span<const std::uint8_t> file);
 
 }  // namespace lodbench::report

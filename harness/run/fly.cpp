@@ -17,6 +17,7 @@
 #include "report/png.h"
 #include "report/results.h"
 #include "run/cell.h"
+#include "run/flight_record.h"
 #include "run/frame_measurer.h"
 #include "run/stage.h"
 #include "run/timing.h"
@@ -83,6 +84,7 @@ public:
         measurer_->write_picture(shot_path("worst"), spec_.id);
         measurer_.reset();
         stage_->release();
+        record_flight(spec_.out, scenario_.name, *terrain_, *path_, scenario_.frames);
     }
 
     [[nodiscard]] std::string where() const {

@@ -29,3 +29,13 @@ double lodbench_ssim(const lodbench::measure::RgbPicture& a,
     // The library hands its sum over as a float, which beyond 2^24 pixels may be rounded upward.
     return std::min(1.0, sum / (kChannels * double(a.width) * double(a.height)));
 }
+
+bool lodbench_encode_webp(const lodbench::measure::RgbPicture& picture, float quality,
+                          std::vector<std::uint8_t>& file) {
+    std::uint8_t* bytes = nullptr;
+    const std::size_t size = WebPEncodeRGB(picture.bytes.data(), picture.width, picture.height,
+                                           3 * picture.width, quality, &bytes);
+    if (size > 0) file.assign(bytes, bytes + size);
+    WebPFree(bytes);
+    return size > 0;
+}

@@ -1,0 +1,135 @@
+#include "run/flight_record.h"
+
+#include <json/value.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "report/json.h"
+#include "report/png.h"
+#include "report/results.h"
+
+namespace lodbench::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kLargestMap = 512;  // pixels
+// Of the map's tone: what a plain has, and what the steepest slope takes from or adds to it.
+constexpr double kPlainTone = 168;
+constexpr double kToneRange = 120;
+
+/// The mean height of the samples below each pixel, row by row.
+std::vector<double> mean_heights(const terrain::HeightField& terrain, int width, int height) {
+    const TerrainInfo& info = terrain.info();
+    std::vector<double> means;
+    means.reserve(std::size_t(width) * std::size_t(height));
+    const auto first = [](int pixel, int pixels, int samples) {
+        return int(std::int64_t(pixel) * samples / pixels);
+    };
+    for (int y = 0; y < height; ++y) {
+        const int top = first(y, height, info.rows);
+        const int bottom = std::max(first(y + 1, height, info.rows), top + 1);
+        for (int x = 0; x < width; ++x) {
+            const int left = first(x, width, info.columns);
+            const int right = std::max(first(x + 1, width, info.columns), left + 1);
+            double sum = 0;
+            for (int row = top; row < bottom; ++row) {
+                const float* samples =
+                    terrain.samples().data() + std::size_t(row) * std::size_t(info.columns);
+                for (int column = left; column < right; ++column) sum += double(samples[column]);
+            }
+            means.push_back(sum / (double(bottom - top) * double(right - left)));
+        }
+    }
+    return means;
+}
+
+Json::Value vector_json(const glm::dvec3& vector) {
+    Json::Value json = Json::arrayValue;
+    for (int i = 0; i < 3; ++i) json.append(vector[i]);
+    return json;
+}
+
+Json::Value pair_json(double x, double y) {
+    Json::Value json = Json::arrayValue;
+    json.append(x);
+    json.append(y);
+    return json;
+}
+
+}  // namespace
+
+report::Image hillshade(const terrain::HeightField& terrain, int largest) {
+    const TerrainInfo& info = terrain.info();
+    const double extent_x = info.spacing.x * (info.columns - 1);
+    const double extent_y = info.spacing.y * (info.rows - 1);
+    const double scale = double(largest) / std::max(extent_x, extent_y);
+    const int width = std::clamp(int(std::lround(extent_x * scale)), 1, info.columns);
+    const int height = std::clamp(int(std::lround(extent_y * scale)), 1, info.rows);
+    const std::vector<double> heights = mean_heights(terrain, width, height);
+    const auto at = [&](int x, int y) {
+        return heights[std::size_t(std::clamp(y, 0, height - 1)) * std::size_t(width) +
+                       std::size_t(std::clamp(x, 0, width - 1))];
+    };
+    // The slope towards the light, over the steepest there is on the whole but for one in fifty:
+    // flat and alpine terrains alike show their forms.
+    std::vector<double> slopes;
+    slopes.reserve(heights.size());
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const double east = (at(x + 1, y) - at(x - 1, y)) / (2 * extent_x / width);
+            const double south = (at(x, y + 1) - at(x, y - 1)) / (2 * extent_y / height);
+            slopes.push_back(east + south);
+        }
+    }
+    std::vector<double> sizes(slopes.size());
+    std::ranges::transform(slopes, sizes.begin(), [](double slope) { return std::abs(slope); });
+    const auto steep = sizes.begin() + std::ptrdiff_t(sizes.size() * 49 / 50);
+    std::ranges::nth_element(sizes, steep);
+    const double unit = *steep > 0 ? *steep : 1;
+    report::Image image = report::Image::filled(width, height, {});
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+        const double tone = kPlainTone + kToneRange * std::tanh(slopes[i] / unit);
+        const auto level = std::uint8_t(std::clamp(std::lround(tone), 0L, 255L));
+        image.set(int(i % std::size_t(width)), int(i / std::size_t(width)), {level, level, level});
+    }
+    return image;
+}
+
+void record_flight(const fs::path& out, const std::string& name,
+                   const terrain::HeightField& terrain, const scenario::FlightPath& path,
+                   int frames) {
+    const fs::path file = out / "flights" / (name + ".json");
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) return;
+    fs::create_directories(file.parent_path(), ignored);
+    const report::Image map = hillshade(terrain, kLargestMap);
+    report::write_png(out / "flights" / (name + "__hillshade.png"), map.width, map.height, map.rgb);
+
+    const TerrainInfo& info = terrain.info();
+    Json::Value json;
+    json["schema_version"] = report::kSchemaVersion;
+    json["scenario"] = name;
+    json["terrain"] = info.name;
+    json["rows"] = info.rows;
+    json["columns"] = info.columns;
+    json["spacing"] = pair_json(info.spacing.x, info.spacing.y);
+    json["south_west"] = pair_json(info.extent_min().x, info.extent_min().y);
+    json["north_east"] = pair_json(info.extent_max().x, info.extent_max().y);
+    json["min_height"] = double(info.min_height);
+    json["max_height"] = double(info.max_height);
+    json["positions"] = Json::arrayValue;
+    json["directions"] = Json::arrayValue;
+    for (int frame = 0; frame < frames; ++frame) {
+        Camera camera;
+        path.place(frame, camera);
+        json["positions"].append(vector_json(camera.position));
+        json["directions"].append(vector_json(camera.forward()));
+    }
+    report::write_whole(file, report::to_text(json) + "\n");
+}
+
+}  // namespace lodbench::run
