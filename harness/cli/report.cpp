@@ -1,0 +1,85 @@
+// lodbench report: results folders as one page, and its tables as CSV.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <set>
+#include <system_error>
+
+#include "api/error.h"
+#include "cli/commands.h"
+#include "report/html/report.h"
+#include "report/results.h"
+
+namespace lodbench::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct ReportOptions {
+    std::vector<fs::path> folders;
+    fs::path out;
+    fs::path csv;
+};
+
+std::vector<report::ResultFolder> read_folders(const std::vector<fs::path>& paths) {
+    std::vector<report::ResultFolder> folders;
+    std::set<fs::path> known;
+    for (const fs::path& path : paths) {
+        std::error_code error;
+        if (!fs::is_directory(path, error)) {
+            throw InputError(fmt::format(
+                "{}: there is no such folder; name a results folder, as `lodbench run --out DIR` "
+                "writes it",
+                path.string()));
+        }
+        if (!known.insert(fs::canonical(path)).second) {
+            throw InputError(fmt::format("{}: this folder is named twice", path.string()));
+        }
+        folders.push_back(report::read_result_folder(path));
+    }
+    return folders;
+}
+
+void write_csv(const fs::path& folder, const std::map<std::string, std::string>& tables) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw EnvironmentError(
+            fmt::format("cannot make the folder {}: {}; choose another with --csv", folder.string(),
+                        error.message()));
+    }
+    for (const auto& [name, csv] : tables) report::write_whole(folder / (name + ".csv"), csv);
+}
+
+void write(const ReportOptions& options) {
+    const report::html::Report page = report::html::make_report(read_folders(options.folders));
+    const fs::path out =
+        options.out.empty() ? options.folders.front() / "report.html" : options.out;
+    if (!options.csv.empty()) write_csv(options.csv, page.csv);
+    report::write_whole(out, page.html);
+    fmt::print("report    {}\n", fs::absolute(out).lexically_normal().string());
+    if (!options.csv.empty()) {
+        fmt::print("tables    {}\n", fs::absolute(options.csv).lexically_normal().string());
+    }
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, int& /*status*/) {
+    const auto options = std::make_shared<ReportOptions>();
+    CLI::App* command =
+        app.add_subcommand("report", "Writes results folders as one HTML page that opens offline.");
+    command
+        ->add_option("DIR", options->folders,
+                     "results folders, as `lodbench run --out` writes them")
+        ->required();
+    command->add_option("--out,-o", options->out,
+                        "the page; default report.html in the first folder");
+    command->add_option("--csv", options->csv, "folder to write every table to as CSV");
+    command->callback([options] { write(*options); });
+}
+
+}  // namespace lodbench::cli

@@ -1,0 +1,73 @@
+#include "report/html/axis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/truth_picture.h"
+
+namespace lodbench::report::html {
+
+Axis::Axis(std::span<const double> values, bool logarithmic, bool from_zero, double begin,
+           double end)
+    : logarithmic_(logarithmic), begin_(begin), end_(end) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const double value : values) {
+        if (!std::isfinite(value) || (logarithmic && value <= 0)) continue;
+        const double scaled = logarithmic ? std::log10(value) : value;
+        low = std::min(low, scaled);
+        high = std::max(high, scaled);
+    }
+    if (low > high) return;  // nothing: 0 .. 1
+    if (from_zero && !logarithmic) low = std::min(low, 0.0);
+    const double size = high - low;
+    const double margin = size > 0      ? 0.05 * size
+                          : logarithmic ? 0.3
+                                        : std::max(0.1 * std::abs(high), 1e-9);
+    low_ = low == 0 && !logarithmic ? 0 : low - margin;
+    high_ = high + margin;
+}
+
+double Axis::place(double value) const {
+    double scaled = value;
+    if (logarithmic_) scaled = value > 0 ? std::log10(value) : low_;
+    const double fraction = std::clamp((scaled - low_) / (high_ - low_), 0.0, 1.0);
+    return begin_ + fraction * (end_ - begin_);
+}
+
+std::vector<double> Axis::ticks() const {
+    std::vector<double> ticks;
+    if (!logarithmic_) {
+        const double step = nice_scale((high_ - low_) / 6);
+        for (double k = std::ceil(low_ / step); k * step <= high_ && ticks.size() < 20; ++k) {
+            ticks.push_back(k * step);
+        }
+        return ticks;
+    }
+    // 1, 2 and 5 of each decade where there are few decades; else of each n-th the 1.
+    const double decades = high_ - low_;
+    const double every = std::max(1.0, std::ceil(decades / 8));
+    for (double decade = std::floor(low_); decade <= high_; decade += every) {
+        for (const double digit : {1.0, 2.0, 5.0}) {
+            const double place = decade + std::log10(digit);
+            if ((digit == 1 || decades < 3) && place >= low_ && place <= high_) {
+                ticks.push_back(digit * std::pow(10, decade));
+            }
+        }
+    }
+    return ticks;
+}
+
+std::string tick_text(double value) {
+    const double size = std::abs(value);
+    if (size >= 1e9) return fmt::format("{:.3g}G", value / 1e9);
+    if (size >= 1e6) return fmt::format("{:.3g}M", value / 1e6);
+    if (size >= 1e4) return fmt::format("{:.3g}k", value / 1e3);
+    if (size < 1e-9) return "0";
+    return fmt::format("{:.4g}", value);
+}
+
+}  // namespace lodbench::report::html

@@ -1,0 +1,122 @@
+#include "report/html/data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/html/plot.h"
+#include "report/html/text.h"
+
+namespace lodbench::report::html {
+
+ReportData arrange(const std::vector<ResultFolder>& folders) {
+    ReportData data;
+    data.folders = &folders;
+    for (const ResultFolder& folder : folders) {
+        for (CellGroup& group : group_cells(folder.cells)) {
+            data.colors.emplace(group.method, 0);
+            const bool begins = data.sets.empty() || data.sets.back().folder != &folder ||
+                                data.sets.back().scenario != group.scenario;
+            if (begins) {
+                ResultSet& set = data.sets.emplace_back();
+                set.folder = &folder;
+                set.scenario = group.scenario;
+                set.title = folders.size() == 1
+                                ? group.scenario
+                                : fmt::format("{} ({})", group.scenario, folder.name);
+                set.id = fmt::format("set{}", data.sets.size());
+                set.plotted = data.sets.size() <= kMostPlottedSets;
+                const auto flight = folder.flights.find(group.scenario);
+                if (flight != folder.flights.end()) set.flight = &flight->second;
+                const Json::Value& seed = folder.run["seed"];
+                if (seed.isUInt64()) set.seed = seed.asUInt64();
+            }
+            data.sets.back().groups.push_back(std::move(group));
+        }
+    }
+    std::size_t next = 0;
+    for (auto& [method, color] : data.colors) color = next++;
+    return data;
+}
+
+std::optional<double> figure(const CellGroup& group, const char* key, const char* inner) {
+    return measure::median(numbers_of(group.good, key, inner));
+}
+
+std::optional<double> greatest(const CellGroup& group, const char* key, const char* inner) {
+    const std::vector<double> values = numbers_of(group.good, key, inner);
+    if (values.empty()) return std::nullopt;
+    return *std::ranges::max_element(values);
+}
+
+std::optional<measure::RunInterval> interval(const CellGroup& group, std::uint64_t seed,
+                                             const char* key, const char* inner) {
+    const std::vector<double> values = numbers_of(group.good, key, inner);
+    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+        return std::nullopt;
+    }
+    return measure::run_interval(values, seed);
+}
+
+std::optional<double> error_of(const CellGroup& group) {
+    const auto realtime = figure(group, "pixel_error_realtime_px", "p999");
+    return realtime ? realtime : figure(group, "pixel_error_px", "p999");
+}
+
+std::vector<double> frame_column(const ResultSet& set, const CellGroup& group, const char* column) {
+    std::vector<const std::vector<double>*> runs;
+    std::size_t frames = 0;
+    for (const Json::Value* cell : group.good) {
+        const FrameTable& table = set.folder->frames.at((*cell)["cell"].asString());
+        if (const std::vector<double>* values = table.find(column)) {
+            runs.push_back(values);
+            frames = std::max(frames, values->size());
+        }
+    }
+    std::vector<double> result;
+    std::vector<double> values;
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+        values.clear();
+        for (const auto* run : runs) {
+            if (frame < run->size() && !std::isnan((*run)[frame])) values.push_back((*run)[frame]);
+        }
+        result.push_back(measure::median(values).value_or(kAbsent));
+    }
+    return result;
+}
+
+std::vector<std::size_t> choose_groups(const ResultSet& set, std::size_t most) {
+    std::vector<std::pair<std::size_t, std::size_t>> order;  // variant, group
+    std::map<std::string, std::size_t> variants;
+    for (std::size_t i = 0; i < set.groups.size(); ++i) {
+        if (set.groups[i].good.empty()) continue;
+        order.emplace_back(variants[set.groups[i].method]++, i);
+    }
+    std::ranges::sort(order);
+    if (order.size() > most) order.resize(most);
+    std::vector<std::size_t> chosen;
+    for (const auto& [variant, group] : order) chosen.push_back(group);
+    std::ranges::sort(chosen);
+    return chosen;
+}
+
+std::size_t variant_of(const ResultSet& set, std::size_t group) {
+    std::size_t variant = 0;
+    for (std::size_t i = 0; i < group; ++i) {
+        if (set.groups[i].method == set.groups[group].method) ++variant;
+    }
+    return variant;
+}
+
+std::string left_out_note(const ResultSet& set, std::size_t drawn) {
+    const auto good = std::size_t(std::ranges::count_if(
+        set.groups, [](const CellGroup& group) { return !group.good.empty(); }));
+    if (good <= drawn) return {};
+    return fmt::format(
+        "Drawn are {} of {} settings, of each method the first; the tables and the CSV "
+        "files have all of them.",
+        drawn, good);
+}
+
+}  // namespace lodbench::report::html

@@ -1,0 +1,62 @@
+#include "report/html/pictures.h"
+
+#include <fmt/format.h>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/modules.h"
+#include "measure/modules/ssim.h"
+#include "report/html/text.h"
+#include "report/png.h"
+#include "report/results.h"
+
+namespace lodbench::report::html {
+
+namespace {
+
+constexpr float kQuality = 78;  // of 100: letters of 15 pixels stay clean
+constexpr std::uintmax_t kLargestFile = 64U << 20;
+
+std::string data_uri(const char* type, std::span<const std::uint8_t> bytes) {
+    return fmt::format("data:image/{};base64,{}", type, base64(bytes));
+}
+
+std::optional<std::string> webp_uri(const Image& image) {
+    void* symbol = base::find_in_module("webp", "lodbench_encode_webp");
+    if (symbol == nullptr) return std::nullopt;
+    std::vector<std::uint8_t> bytes;
+    const auto encode = reinterpret_cast<decltype(&lodbench_encode_webp)>(symbol);
+    if (!encode({image.rgb, image.width, image.height}, kQuality, bytes)) return std::nullopt;
+    return data_uri("webp", bytes);
+}
+
+}  // namespace
+
+std::string PictureBudget::embed(const std::filesystem::path& png) {
+    std::error_code absent;
+    if (!std::filesystem::is_regular_file(png, absent) ||
+        std::filesystem::file_size(png, absent) > kLargestFile) {
+        return {};
+    }
+    if (left_ == 0) {  // spent: not even looked at
+        ++left_out_;
+        return {};
+    }
+    const std::string file = read_text(png);
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
+    const std::optional<Image> image = read_png(bytes);
+    if (!image) return {};
+    std::string uri = webp_uri(*image).value_or("");
+    if (uri.empty() || uri.size() > file.size() * 4 / 3) uri = data_uri("png", bytes);
+    if (uri.size() > left_) {
+        left_ = 0;  // what follows is no smaller
+        ++left_out_;
+        return {};
+    }
+    left_ -= uri.size();
+    return uri;
+}
+
+}  // namespace lodbench::report::html

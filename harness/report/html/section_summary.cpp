@@ -1,0 +1,184 @@
+// What one sees first: a row for each method and setting, and what could not be measured.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "report/html/sections.h"
+#include "report/html/text.h"
+#include "report/trade.h"
+
+namespace lodbench::report::html {
+
+namespace {
+
+constexpr double kMebibyte = 1048576.0;
+
+/// A column of the summary: a field of a cell, gathered over the repetitions.
+struct Figure {
+    const char* title;
+    const char* key;
+    const char* inner;
+    int digits;
+    double unit;
+    bool greatest;  ///< over the repetitions, instead of the median
+    const char* explanation;
+};
+
+constexpr Figure kFigures[] = {
+    {"median, ms", "frame_ms", "median", 3, 1, false, "median frame time"},
+    {"P90, ms", "frame_ms", "p90", 3, 1, false, "nine frames in ten are faster"},
+    {"max, ms", "frame_ms", "max", 3, 1, true, "the slowest frame of all repetitions"},
+    {"triangles", "triangles", "mean", 0, 1, false, "mean per frame, as the GPU was asked to draw"},
+    {"P99.9 error, px", "pixel_error_px", "p999", 3, 1, false,
+     "of a thousand pixels all but one are nearer to the truth"},
+    {"at pace, px", "pixel_error_realtime_px", "p999", 3, 1, false,
+     "the same in the real-time replay: what the frame times showed; asynchronous methods only"},
+    {"max error, px", "pixel_error_px", "max", 2, 1, false, "of the worst pixel"},
+    {"cracks, px", "crack_pixels", "total", 0, 1, false,
+     "pixels that show what lies behind the surface, over all measured frames"},
+    {"popping P99.9, px", "popping_px", "p999", 3, 1, false,
+     "how far drawn points jump on screen from a frame to the next, the camera's motion apart"},
+    {"honesty", "bound_honesty", nullptr, 3, 1, false,
+     "greatest screen error / claimed bound: above 1 the claim does not hold"},
+    {"prepare, s", "prepare_s", nullptr, 3, 1, false, "preprocessing, wall time"},
+    {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte, false, "allocated on the GPU"},
+    {"RSS, MiB", "peak_rss_bytes", nullptr, 0, kMebibyte, true,
+     "greatest resident memory of the method's process"},
+};
+
+std::string field_name(const Figure& entry) {
+    return entry.inner == nullptr ? entry.key : fmt::format("{}.{}", entry.key, entry.inner);
+}
+
+/// Groups on the front of P99.9 error against the median frame time.
+std::set<std::size_t> fastest_for_their_error(const ResultSet& set) {
+    std::vector<TradePoint> points;
+    for (const CellGroup& group : set.groups) {
+        points.push_back({figure(group, "frame_ms", "median").value_or(kAbsent),
+                          error_of(group).value_or(kAbsent)});
+    }
+    const std::vector<std::size_t> front = pareto_front(points);
+    return {front.begin(), front.end()};
+}
+
+/// In any scenario: all tables of one kind have the same columns.
+bool any_has(const ReportData& data, const char* key) {
+    return std::ranges::any_of(data.sets, [&](const ResultSet& set) {
+        return std::ranges::any_of(set.groups, [&](const CellGroup& group) {
+            return std::ranges::any_of(group.good, [&](const Json::Value* cell) {
+                return !member_of(*cell, key).isNull();
+            });
+        });
+    });
+}
+
+}  // namespace
+
+Table table_of(const ResultSet& set, const char* id, const std::string& caption) {
+    Table table;
+    table.id = id;
+    table.caption = caption;
+    table.columns.push_back({"method", "method", false});
+    table.results = set.folder->name;
+    table.scenario = set.scenario;
+    return table;
+}
+
+void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
+    Table table = table_of(set, "summary", "Summary of " + set.title);
+    table.columns.push_back({"fps", "fps", true, "1000 / mean frame time"});
+    table.columns.push_back(
+        {"fps, interval", "fps.interval", false,
+         "over the repetitions: from five on a 95 % bootstrap interval of the median, below that "
+         "the range"});
+    std::vector<Figure> figures;
+    for (const Figure& entry : kFigures) {
+        // A column for asynchronous methods alone.
+        const bool realtime = std::string_view(entry.key) == "pixel_error_realtime_px";
+        if (realtime && !any_has(data, entry.key)) continue;
+        figures.push_back(entry);
+        table.columns.push_back({entry.title, field_name(entry), true, entry.explanation});
+    }
+    table.columns.push_back(
+        {"front", "front", false,
+         "no other setting here is both faster (median) and nearer to the truth (P99.9)"});
+    const std::set<std::size_t> front = fastest_for_their_error(set);
+    for (std::size_t i = 0; i < set.groups.size(); ++i) {
+        const CellGroup& group = set.groups[i];
+        std::vector<Field>& row = table.rows.emplace_back();
+        row.push_back(text_field(group.label));
+        const auto fps = interval(group, set.seed, "fps");
+        row.push_back(number_field(figure(group, "fps"), 1));
+        row.push_back(fps && group.good.size() > 1
+                          ? text_field(fmt::format("{:.1f} to {:.1f}", fps->low, fps->high))
+                          : Field{"-", ""});
+        for (const Figure& entry : figures) {
+            row.push_back(number_field(entry.greatest ? greatest(group, entry.key, entry.inner)
+                                                      : figure(group, entry.key, entry.inner),
+                                       entry.digits, entry.unit));
+        }
+        row.push_back(front.contains(i) ? Field{"●", "yes"} : Field{"", "no"});
+    }
+    if (!set.plotted) {
+        page.csv_only(table);
+        return;
+    }
+    page.table(table, set.groups.size());
+    page.paragraph(
+        "Medians over the repetitions; max and RSS are the greatest. ●: on the Pareto front of "
+        "error against frame time. A dash: not measured. ∞: ground that no triangle covers.",
+        "note");
+}
+
+void add_failures(Page& page, const ResultSet& set) {
+    Table table = table_of(set, "failures", "Cells of " + set.title + " that did not end well");
+    table.columns.push_back({"repetition", "repetition", true});
+    table.columns.push_back({"status", "status", false});
+    table.columns.push_back({"reason", "reason", false});
+    for (const CellGroup& group : set.groups) {
+        for (const Json::Value* cell : group.cells) {
+            if ((*cell)["status"].asString() == "ok") continue;
+            table.rows.push_back({text_field(group.label),
+                                  number_field((*cell)["repetition"].asInt(), 0),
+                                  text_field((*cell)["status"].asString()),
+                                  text_field((*cell)["reason"].asString())});
+        }
+    }
+    if (table.rows.empty()) return;
+    page.heading(3, "Failures", set.id + "-failures");
+    page.table(table, table.rows.size());
+}
+
+void add_legend(Page& page, const ReportData& data, const ResultSet& set) {
+    std::set<std::size_t> drawn;
+    for (const std::size_t i : choose_groups(set, kMostCurves)) drawn.insert(i);
+    if (drawn.empty()) return;
+    std::string html =
+        fmt::format("<fieldset class=\"legend\"><legend>Methods in the plots of {}</legend>\n",
+                    escape(set.title));
+    std::string method;
+    for (const std::size_t i : drawn) {
+        const CellGroup& group = set.groups[i];
+        const std::size_t color = data.color_of(group);
+        Series series{group.label};
+        series.color = color;
+        series.variant = variant_of(set, i);
+        if (method != group.method || series.variant == 0) {
+            html += fmt::format(
+                "{}<div class=\"method\"><label><input class=\"js-only\" type=\"checkbox\" checked "
+                "data-set=\"{}\" data-toggle=\"{}\"><span class=\"swatch {}\"></span>{}</label>",
+                method.empty() ? "" : "</div>\n", escape(set.id), escape(group.method),
+                color_class(color), escape(group.method));
+            method = group.method;
+        }
+        if (!group.setting.empty()) {
+            html += fmt::format("<span class=\"setting\">{}{}</span>", key_html(series),
+                                escape(group.setting));
+        }
+    }
+    page.raw(html + "</div>\n</fieldset>\n");
+}
+
+}  // namespace lodbench::report::html

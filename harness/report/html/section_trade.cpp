@@ -1,0 +1,126 @@
+// Speed against accuracy: what each setting costs, and how wrong its picture is.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "report/html/sections.h"
+#include "report/html/text.h"
+#include "report/trade.h"
+
+namespace lodbench::report::html {
+
+namespace {
+
+struct Cost {
+    const char* id;
+    const char* title;
+    const char* axis;
+    const char* key;
+    const char* inner;
+    double unit;
+};
+
+constexpr Cost kCosts[] = {
+    {"time", "Error against frame time", "median frame time, ms", "frame_ms", "median", 1},
+    {"triangles", "Error against triangles", "triangles a frame, mean", "triangles", "mean", 1},
+    {"gpu", "Error against GPU memory", "allocated on the GPU, MiB", "gpu_bytes", nullptr,
+     1048576.0},
+    {"prepare", "Error against preprocessing", "preprocessing, s", "prepare_s", nullptr, 1},
+};
+
+/// Whether both axes say more by orders of magnitude: all positive, and far apart in one of them.
+bool spreads(const std::vector<TradePoint>& points) {
+    double ratio = 1;
+    for (const auto coordinate : {&TradePoint::cost, &TradePoint::error}) {
+        double least = INFINITY;
+        double most = 0;
+        for (const TradePoint& point : points) {
+            if (!std::isfinite(point.cost) || !std::isfinite(point.error)) continue;
+            least = std::min(least, point.*coordinate);
+            most = std::max(most, point.*coordinate);
+        }
+        if (!(least > 0)) return false;
+        ratio = std::max(ratio, most / least);
+    }
+    return ratio >= 8;
+}
+
+Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) {
+    std::vector<TradePoint> points;
+    std::size_t infinite = 0;
+    for (const CellGroup& group : set.groups) {
+        const auto value = figure(group, cost.key, cost.inner);
+        const auto error = error_of(group);
+        if (value && error && std::isinf(*error)) ++infinite;
+        points.push_back({value ? *value / cost.unit : kAbsent, error.value_or(kAbsent)});
+    }
+    const std::vector<std::size_t> front = pareto_front(points);
+
+    Plot plot;
+    plot.id = fmt::format("{}-trade-{}", set.id, cost.id);
+    plot.title = cost.title;
+    plot.x_title = cost.axis;
+    plot.y_title = "pixel error P99.9, px";
+    plot.can_be_logarithmic = true;
+    plot.logarithmic = spreads(points);
+    Series front_series{"Pareto front"};
+    front_series.ink = true;
+    front_series.variant = 2;
+    front_series.dots = false;
+    for (const std::size_t i : front)
+        front_series.marks.push_back({points[i].cost, points[i].error});
+    plot.series.push_back(std::move(front_series));
+
+    std::map<std::string, Series> by_method;
+    for (std::size_t i = 0; i < set.groups.size(); ++i) {
+        if (!std::isfinite(points[i].cost) || !std::isfinite(points[i].error)) continue;
+        const CellGroup& group = set.groups[i];
+        Series& series = by_method[group.method];
+        series.name = series.toggle = group.method;
+        series.color = data.color_of(group);
+        Mark mark{points[i].cost, points[i].error};
+        mark.label = group.label;
+        mark.front = std::ranges::find(front, i) != front.end();
+        series.marks.push_back(std::move(mark));
+    }
+    for (auto& [method, series] : by_method) {
+        std::ranges::stable_sort(series.marks, {}, &Mark::x);
+        plot.series.push_back(std::move(series));
+    }
+    if (infinite > 0) {
+        plot.notes.push_back(fmt::format(
+            "{} of the settings leave ground uncovered: their error is infinite, and no point of "
+            "the plot.",
+            infinite));
+    }
+    return plot;
+}
+
+}  // namespace
+
+void add_trade(Page& page, const ReportData& data, const ResultSet& set) {
+    page.heading(3, "Speed against accuracy", set.id + "-trade");
+    std::vector<Plot> plots;
+    for (const Cost& cost : kCosts) plots.push_back(trade_plot(data, set, cost));
+    if (!page.plots(plots)) {
+        page.not_measured("no cell has a pixel error (--no-truth, or every cell failed)");
+        return;
+    }
+    const bool realtime = std::ranges::any_of(set.groups, [](const CellGroup& group) {
+        return figure(group, "pixel_error_realtime_px", "p999").has_value();
+    });
+    page.paragraph(
+        fmt::format(
+            "Down and left is better. The settings of a method are joined by a line; ringed "
+            "and joined by the dashed line is the Pareto front of all methods: nothing else "
+            "costs less and errs less.{}",
+            realtime ? " The error of an asynchronous method is that of its real-time "
+                       "replay, which its frame times showed."
+                     : ""),
+        "note");
+}
+
+}  // namespace lodbench::report::html

@@ -1,0 +1,158 @@
+// What the pictures really show: bounds that hold or do not, popping, and each method's worst
+// frame.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/html/sections.h"
+#include "report/html/text.h"
+
+namespace lodbench::report::html {
+
+namespace {
+
+/// A row for each group with what `fields` names ("crack_pixels.total"), at `digits`.
+struct Measure {
+    const char* title;
+    const char* key;
+    const char* inner;
+    int digits;
+};
+
+template <std::size_t count>
+Table truth_table(const ResultSet& set, const char* id, const std::string& caption,
+                  const Measure (&measures)[count]) {
+    Table table = table_of(set, id, caption);
+    for (const Measure& measure : measures) {
+        table.columns.push_back(
+            {measure.title, measure.inner == nullptr
+                                ? std::string(measure.key)
+                                : fmt::format("{}.{}", measure.key, measure.inner)});
+    }
+    for (const CellGroup& group : set.groups) {
+        std::vector<Field>& row = table.rows.emplace_back();
+        row.push_back(text_field(group.label));
+        for (const Measure& measure : measures) {
+            row.push_back(number_field(figure(group, measure.key, measure.inner), measure.digits));
+        }
+    }
+    return table;
+}
+
+bool any_has(const ResultSet& set, const char* key) {
+    return std::ranges::any_of(
+        set.groups, [&](const CellGroup& group) { return figure(group, key).has_value(); });
+}
+
+constexpr const char* kNoTruth = "the truth was left out (--no-truth), or every cell failed";
+
+}  // namespace
+
+void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
+    page.heading(3, "What claimed bounds are worth", set.id + "-bounds");
+    Plot plot;
+    plot.kind = Plot::Kind::bars;
+    plot.id = set.id + "-honesty";
+    plot.title = "Greatest screen error over claimed bound";
+    plot.x_title = "measured / claimed; above 1 the claim does not hold";
+    plot.y_title = "method";
+    plot.can_be_logarithmic = true;
+    plot.reference = 1;
+    Series series{"bound honesty"};
+    std::vector<std::string> silent;
+    for (const std::size_t i : choose_groups(set, kMostBars)) {
+        const CellGroup& group = set.groups[i];
+        const auto honesty = figure(group, "bound_honesty");
+        if (!honesty) {
+            silent.push_back(group.label);
+            continue;
+        }
+        series.marks.push_back({*honesty, double(plot.categories.size())});
+        plot.categories.push_back({group.label, group.method, data.color_of(group)});
+    }
+    const bool drawn = !series.marks.empty();
+    plot.series.push_back(std::move(series));
+    if (drawn && !silent.empty()) {
+        std::string names;
+        for (const std::string& name : silent) names += (names.empty() ? "" : ", ") + name;
+        plot.notes.push_back("No bound is claimed, or none was measured, for: " + names + ".");
+    }
+    if (!drawn || !page.plots({plot}, true)) {
+        page.not_measured("no method here claims a bound, or the truth was left out");
+    }
+    static constexpr Measure kMeasures[] = {
+        {"claimed, px", "claimed_px", nullptr, 3},
+        {"measured max, px", "screen_error_px", "max", 3},
+        {"P99.9, px", "screen_error_px", "p999", 3},
+        {"P99, px", "screen_error_px", "p99", 3},
+        {"RMS, px", "screen_error_px", "rms", 3},
+        {"share over the bound", "screen_error_px", "over_tau", 5},
+        {"measured / claimed", "bound_honesty", nullptr, 3},
+        {"seen by the camera, max, px", "visible_error_px", "max", 3}};
+    page.table(
+        truth_table(set, "bounds", "Screen error and claimed bounds, " + set.title, kMeasures));
+}
+
+void add_popping(Page& page, const ResultSet& set) {
+    page.heading(3, "Popping, cracks and the picture", set.id + "-picture");
+    static constexpr Measure kMeasures[] = {
+        {"popping max, px", "popping_px", "max", 3},
+        {"popping P99.9, px", "popping_px", "p999", 3},
+        {"samples that pop over 1 px", "popping_px", "over_1px", 0},
+        {"crack pixels", "crack_pixels", "total", 0},
+        {"skirt pixels", "skirt_pixels", "total", 0},
+        {"uncovered samples", "uncovered_samples", nullptr, 0},
+        {"silhouette max, px", "silhouette_px", "max", 2},
+        {"height RMS, m, mean", "height_rmse_m", "mean", 3},
+        {"PSNR, dB", "image", "psnr_db", 2},
+        {"SSIM", "image", "ssim", 5}};
+    if (!any_has(set, "truth_frames")) page.not_measured(kNoTruth);
+    page.table(truth_table(set, "picture", "What the pictures show, " + set.title, kMeasures));
+}
+
+void add_worst_pictures(Page& page, const ResultSet& set) {
+    page.heading(3, "Worst frames", set.id + "-worst");
+    const std::size_t left_out_before = page.pictures().left_out();
+    std::string html;
+    for (const std::size_t i : choose_groups(set, set.groups.size())) {
+        const CellGroup& group = set.groups[i];
+        for (const Json::Value* cell : group.good) {
+            const std::string id = (*cell)["cell"].asString();
+            const std::string uri =
+                page.pictures().embed(set.folder->path / "shots" / (id + "__worst.png"));
+            if (uri.empty()) continue;
+            const std::string words =
+                fmt::format("{}: pixel error P99.9 {} px over the flight", group.label,
+                            readable(figure(group, "pixel_error_px", "p999"), 3));
+            html += fmt::format(
+                "<figure class=\"picture\"><figcaption>{0}</figcaption><div class=\"scroll\" "
+                "role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><img loading=\"lazy\" "
+                "decoding=\"async\" src=\"{1}\" alt=\"The worst frame of {2}: as drawn, as it "
+                "should "
+                "be, its error, and where on the terrain that is\"></div></figure>\n",
+                escape(words), uri, escape(group.label));
+        }
+    }
+    const std::size_t left_out = page.pictures().left_out() - left_out_before;
+    if (html.empty() && left_out == 0) {
+        page.not_measured("there is no picture of a worst frame (the truth was left out)");
+        return;
+    }
+    page.paragraph(
+        "Of each setting the worst of the measured frames: drawn, as it should be, the error of "
+        "each "
+        "pixel, and where on the terrain that is. Which frame it is stands above each picture.",
+        "note");
+    page.raw("<div class=\"pictures\">\n" + html + "</div>\n");
+    if (left_out > 0) {
+        page.paragraph(
+            fmt::format("{} more pictures are left out, so that this page stays small: see "
+                        "shots/ in {}.",
+                        left_out, set.folder->name),
+            "note");
+    }
+}
+
+}  // namespace lodbench::report::html
