@@ -32,6 +32,21 @@ SweptNames swept_names(const std::vector<Json::Value>& cells) {
     return swept;
 }
 
+/// For an order in which 2 comes before 10: the swept parameters' values, numbers by their size.
+using SettingOrder = std::vector<std::pair<double, std::string>>;
+
+SettingOrder order_of(const Json::Value& cell, const SweptNames& swept) {
+    SettingOrder order;
+    const auto names = swept.find(cell["method"].asString());
+    if (names == swept.end()) return order;
+    for (const std::string& name : names->second) {
+        const Json::Value& value = member_of(cell, "params", name.c_str());
+        const bool number = value.isNumeric();
+        order.emplace_back(number ? value.asDouble() : 0.0, number ? "" : value_text(value));
+    }
+    return order;
+}
+
 std::string setting_of(const Json::Value& cell, const SweptNames& swept) {
     std::string setting;
     const auto names = swept.find(cell["method"].asString());
@@ -82,12 +97,14 @@ std::vector<double> numbers_of(const std::vector<const Json::Value*>& cells, con
 
 std::vector<CellGroup> group_cells(const std::vector<Json::Value>& cells) {
     const SweptNames swept = swept_names(cells);
-    std::map<std::pair<std::string, std::string>, CellGroup> groups;
+    // By scenario, method, setting; the label keeps apart what the order does not.
+    std::map<std::tuple<std::string, std::string, SettingOrder, std::string>, CellGroup> groups;
     for (const Json::Value& cell : cells) {
         const std::string method = cell["method"].asString();
         const std::string setting = setting_of(cell, swept);
         const std::string label = setting.empty() ? method : method + " " + setting;
-        CellGroup& group = groups[{cell["scenario"].asString(), label}];
+        CellGroup& group =
+            groups[{cell["scenario"].asString(), method, order_of(cell, swept), label}];
         if (group.cells.empty()) {
             group.scenario = cell["scenario"].asString();
             group.method = method;

@@ -22,7 +22,7 @@ struct CellGroup {
     std::vector<const Json::Value*> good;   ///< those that are ok
 };
 
-/// In order of scenario and label; pointers into `cells`.
+/// In order of scenario, method and setting, numbers by their size; pointers into `cells`.
 [[nodiscard]] std::vector<CellGroup> group_cells(const std::vector<Json::Value>& cells);
 
 /// "status (repetition n): reason" of those that are not ok.

@@ -98,23 +98,52 @@ std::string text_table(const std::vector<TableRow>& rows) {
     return text;
 }
 
+std::string markdown_text(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        switch (c) {
+            case '&': result += "&amp;"; break;
+            case '<': result += "&lt;"; break;
+            case '>': result += "&gt;"; break;
+            case '|':
+            case '`':
+            case '*':
+            case '_':
+            case '[':
+            case ']':
+            case '\\': (result += '\\') += c; break;
+            case '\n':
+            case '\r': result += ' '; break;
+            default: result += c;
+        }
+    }
+    return result;
+}
+
 std::string markdown_table(const std::vector<TableRow>& rows) {
     std::string text;
     std::string failures;
+    std::size_t failure_count = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const TableRow& row = rows[r];
         if (r == 0 || row.scenario != rows[r - 1].scenario) {
-            text += fmt::format("{}## {}\n\n| {} |\n|---|", r == 0 ? "" : "\n", row.scenario,
-                                fmt::join(table_columns(), " | "));
+            text += fmt::format("{}**lodbench: {}**\n\n| {} |\n|---|", r == 0 ? "" : "\n",
+                                markdown_text(row.scenario), fmt::join(table_columns(), " | "));
             for (std::size_t i = 1; i < table_columns().size(); ++i) text += "---:|";
             text += "\n";
         }
-        text += fmt::format("| {} | {} |\n", row.label, fmt::join(row.fields, " | "));
+        text +=
+            fmt::format("| {} | {} |\n", markdown_text(row.label), fmt::join(row.fields, " | "));
         for (const std::string& failure : row.failures) {
-            failures += fmt::format("- {}, {}: {}\n", row.label, row.scenario, failure);
+            failures += fmt::format("- {}, {}: {}\n", markdown_text(row.label),
+                                    markdown_text(row.scenario), markdown_text(failure));
+            ++failure_count;
         }
     }
-    if (!failures.empty()) text += "\n## Not measured\n\n" + failures;
+    if (failure_count > 0) {
+        text += fmt::format("\n<details><summary>Not measured: {}</summary>\n\n{}\n</details>\n",
+                            failure_count, failures);
+    }
     return text;
 }
 

@@ -19,12 +19,15 @@ struct TableRow {
 /// "method", "fps (range)", ...
 [[nodiscard]] const std::vector<std::string>& table_columns();
 
-/// Rows in order of scenario and label. `seed` is that of the bootstrap.
+/// Rows in order of scenario, method and setting. `seed` is that of the bootstrap.
 [[nodiscard]] std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells,
                                                std::uint64_t seed);
 
-/// For a terminal: columns aligned, one block a scenario, failures below. For summary.md: Markdown.
+/// For a terminal: columns aligned, one block a scenario, failures below. For summary.md: Markdown, failures folded.
 [[nodiscard]] std::string text_table(const std::vector<TableRow>& rows);
 [[nodiscard]] std::string markdown_table(const std::vector<TableRow>& rows);
+
+/// What is no Markdown and no HTML, whatever it holds; one line.
+[[nodiscard]] std::string markdown_text(const std::string& text);
 
 }  // namespace lodbench::report

@@ -231,10 +231,23 @@ private:
 
     void write_summary() {
         const auto line = [this](const char* title, const Json::Value& value) {
-            return value.isNull() ? std::string()
-                                  : fmt::format("- {}: {}\n", title, value.asString());
+            return value.isNull()
+                       ? std::string()
+                       : fmt::format("- {}: {}\n", title, report::markdown_text(value.asString()));
         };
-        std::string text = "# lodbench run\n\n";
+        // Read as a comment: the tables first, what they depend on folded away below.
+        std::string text = report::markdown_table(report::table_rows(outcome_.cells, plan_.seed));
+        const auto fold = [&text](const std::string& title) {
+            text += fmt::format("\n<details><summary>{}</summary>\n\n", title);
+        };
+        if (!outcome_.warnings.empty()) {
+            fold(fmt::format("Warnings: {}", outcome_.warnings.size()));
+            for (const std::string& warning : outcome_.warnings) {
+                text += fmt::format("- {}\n", report::markdown_text(warning));
+            }
+            text += "\n</details>\n";
+        }
+        fold("Context");
         text += line("lodbench", run_["tool_version"]) + line("commit", run_["commit"]);
         text += line("command", run_["command_line"]) + line("system", run_["os"]) +
                 line("CPU", run_["cpu"]);
@@ -243,10 +256,7 @@ private:
                 line("renderer", run_["gl"]["renderer"]) + line("OpenGL", run_["gl"]["version"]);
             text += line("timer", run_["gl"]["timer_verdict"]);
         }
-        text += fmt::format("- seed: {}\n\n", plan_.seed);
-        text += report::markdown_table(report::table_rows(outcome_.cells, plan_.seed));
-        if (!outcome_.warnings.empty()) text += "\n## Warnings\n\n";
-        for (const std::string& warning : outcome_.warnings) text += fmt::format("- {}\n", warning);
+        text += fmt::format("- seed: {}\n\n</details>\n", plan_.seed);
         report::write_whole(folder_.path() / "summary.md", text);
     }
 

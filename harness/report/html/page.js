@@ -33,16 +33,25 @@
   const setOf = (plot) => plot.id.split('-')[0];
   const isHidden = (plot, toggle) => toggle !== '' && (hidden.get(setOf(plot)) || new Set()).has(toggle);
 
-  // Ticks of a logarithmic axis: 1, 2 and 5 of a decade.
-  const logTick = (value) => {
-    const digit = value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9));
-    return [1, 2, 5].some((d) => Math.abs(digit - d) < 1e-6) ? tick(value) : '';
+  // Ticks of a logarithmic axis: 1, 2 and 5 of each decade where there are few; else of each n-th the 1.
+  const logTicks = (axis) => {
+    const low = Math.log10(axis.min);
+    const high = Math.log10(axis.max);
+    const ticks = [];
+    for (let decade = Math.floor(low); decade <= high; decade += Math.max(1, Math.ceil((high - low) / 8))) {
+      for (const digit of high - low < 3 ? [1, 2, 5] : [1]) {
+        const place = decade + Math.log10(digit);
+        if (place >= low && place <= high) ticks.push({value: digit * Math.pow(10, decade)});
+      }
+    }
+    axis.ticks = ticks;
   };
   const scale = (title, logarithmic, more) => Object.assign({
     type: logarithmic ? 'logarithmic' : 'linear',
+    afterBuildTicks: logarithmic ? logTicks : undefined,
     title: {display: true, text: title, color: colors.ink, font: {size: 12.5}},
     grid: {color: colors.grid, borderColor: colors.grid},
-    ticks: {color: colors.soft, font: {size: 12}, maxRotation: 0, callback: logarithmic ? logTick : tick},
+    ticks: {color: colors.soft, font: {size: 12}, maxRotation: 0, callback: tick},
   }, more);
   const options = (more) => Object.assign({
     animation: false, responsive: true, maintainAspectRatio: false, normalized: true,

@@ -38,27 +38,39 @@ std::vector<std::string> warnings_of(const ResultFolder& folder) {
     return texts;
 }
 
+/// What one must know of the numbers before one reads them.
 std::string conditions_html(const ResultFolder& folder) {
     const Json::Value& run = folder.run;
     const Json::Value& gl = run["gl"];
     std::string html = "<dl class=\"conditions\">\n";
     html += definition("Results", folder.name);
-    html += definition("Renderer", member_of(gl, "renderer"));
-    html += definition("OpenGL", member_of(gl, "version"));
     const Json::Value& software = member_of(gl, "software");
-    if (software.isBool()) {
-        html += definition("Drawn by", software.asBool() ? "software" : "hardware");
-    }
+    const std::string renderer = value_text(member_of(gl, "renderer"));
+    html += definition("Renderer", software.isBool() && software.asBool()
+                                       ? renderer +
+                                             ", in software: times compare methods on this "
+                                             "machine, no more"
+                                       : renderer);
     html += definition("Timer", member_of(gl, "timer_verdict"));
     html += definition("CPU", run["cpu"]);
-    html += definition("Cores", run["cores"]);
+    html += definition("lodbench", fmt::format("{}, {}", value_text(run["tool_version"]),
+                                               value_text(run["commit"])));
+    return html + "</dl>\n";
+}
+
+std::string machine_html(const ResultFolder& folder) {
+    const Json::Value& run = folder.run;
+    const Json::Value& gl = run["gl"];
+    std::string html = "<dl class=\"conditions\">\n";
+    html += definition("Command", run["command_line"]);
+    html += definition("Seed", run["seed"]);
     html += definition("System", run["os"]);
-    html += definition("lodbench", run["tool_version"]);
-    html += definition("Commit", run["commit"]);
+    html += definition("Kernel", run["kernel"]);
+    html += definition("Cores", run["cores"]);
+    html += definition("OpenGL", member_of(gl, "version"));
+    html += definition("Device", member_of(gl, "device"));
     html += definition("Build", run["build_type"]);
     html += definition("Compiler", run["compiler"]);
-    html += definition("Seed", run["seed"]);
-    html += definition("Command", run["command_line"]);
     return html + "</dl>\n";
 }
 
@@ -112,6 +124,7 @@ void add_context(Page& page, const ReportData& data) {
     page.heading(2, "Context", "context");
     for (const ResultFolder& folder : *data.folders) {
         if (data.folders->size() > 1) page.heading(3, folder.name);
+        page.raw(machine_html(folder));
         for (const Json::Value& scenario : folder.run["scenarios"]) {
             if (!scenario.isObject()) continue;
             page.open_details(

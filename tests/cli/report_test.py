@@ -1,0 +1,331 @@
+"""The page of `lodbench report`: its numbers are those of cells.jsonl, nothing that is in a results folder gets out of
+its place, and what is damaged is refused by file and line.
+
+usage: report_test.py LODBENCH_BINARY
+"""
+
+import base64
+import csv
+import hashlib
+import json
+import math
+import pathlib
+import re
+import statistics
+import sys
+import tempfile
+import time
+import unittest
+
+from report_page import (FRAMES, Page, cell, frames, png, report, value_of, write_folder)
+
+BINARY = sys.argv.pop(1)
+HOSTILE = ['<script>alert(1)</script>', '"><img src=x onerror=alert(1)>', "</title></style></script><svg onload=alert(1)>",
+           "a & b 'c' \u2028 \u2029 <!-- <![CDATA[", "]]>--></table></details>", "\u0000\u0007 \ud83d\ude00"]
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.root = pathlib.Path(scratch.name)
+        self.out = self.root / "report.html"
+
+    def make(self, *folders, more=()):
+        status, output = report(BINARY, *folders, "-o", self.out, *more)
+        self.assertEqual(status, 0, output)
+        text = self.out.read_text()
+        page = Page(text)
+        self.assertEqual(page.errors, [])
+        self.assertEqual(len(page.ids), len(set(page.ids)), "an id is there twice")
+        return page, text
+
+    def cells(self):
+        cells = []
+        for tau in (0.5, 1, 2, 10):
+            for repetition in range(3):
+                truth = {} if repetition == 0 else {k: None for k in (
+                    "truth_frames", "screen_error_px", "pixel_error_px", "crack_pixels", "popping_px", "bound_honesty")}
+                cells.append(cell(f"lindstrom__tau={tau}__demo__r{repetition}", params={"tau": tau, "threads": 2},
+                                  repetition=repetition, time=20 / tau + repetition / 7, error=tau / 3, **truth))
+        cells.append(cell("full-grid__demo__r0", method="full-grid", time=33.3, error=0, bound_honesty=None,
+                          claimed_px=None))
+        cells.append(cell("leaky__demo__r0", method="leaky", time=1 / 3, bound_honesty="inf",
+                          pixel_error_px={"max": "inf", "p999": "inf", "worst": None}))
+        return cells
+
+    def test_every_cell_stands_in_the_page_with_its_exact_numbers(self):
+        cells = self.cells()
+        page, _ = self.make(write_folder(self.root / "run", cells))
+        rows = {row["cell"][0]: row for row in page.rows("cells")}
+        self.assertEqual(set(rows), {c["cell"] for c in cells})
+        compared = 0
+        for record in cells:
+            for field, (text, value) in rows[record["cell"]].items():
+                if value is None:
+                    continue
+                expected = value_of(record, field)
+                if expected is None:
+                    self.assertEqual((text, value), ("-", ""), field)
+                else:
+                    self.assertEqual(float(value), expected, field)
+                    self.assertEqual(text == "∞", math.isinf(expected), field)
+                    compared += 1
+        self.assertGreater(compared, 150)
+
+    def test_the_tables_of_a_scenario_are_the_medians_of_its_cells(self):
+        cells = self.cells()
+        page, _ = self.make(write_folder(self.root / "run", cells))
+        greatest = {"frame_ms.max", "peak_rss_bytes"}
+        compared = 0
+        for table in ("summary", "times", "resources", "bounds", "picture", "economy"):
+            rows = page.rows(table, "demo")
+            self.assertEqual(len(rows), 6, table)
+            for row in rows:
+                label = row["method"][0]
+                members = [c for c in cells if label in (c["method"], f"{c['method']} tau={c['params'].get('tau')}")]
+                self.assertTrue(members, label)
+                for field, (_, value) in row.items():
+                    if value is None:
+                        continue
+                    numbers = [n for n in (value_of(c, field) for c in members) if n is not None]
+                    if not numbers:
+                        self.assertEqual(value, "", (label, field))
+                        continue
+                    pick = max if table == "summary" and field in greatest else statistics.median
+                    self.assertEqual(float(value), pick(numbers), (label, field))
+                    compared += 1
+        self.assertGreater(compared, 100)
+
+    def test_csv_files_hold_the_tables(self):
+        cells = self.cells()
+        folder = write_folder(self.root / "run", cells)
+        page, _ = self.make(folder, more=["--csv", self.root / "csv"])
+        names = {table["id"] for table in page.tables}
+        self.assertEqual({p.stem for p in (self.root / "csv").iterdir()}, names)
+        for name in names:
+            with open(self.root / "csv" / f"{name}.csv", newline="") as stream:
+                rows = list(csv.DictReader(stream))
+            shown = page.rows(name)
+            self.assertEqual(len(rows), len(shown), name)
+            for row, other in zip(rows, shown):
+                self.assertEqual(row["results"], "run")
+                for field, (text, value) in other.items():
+                    if value is not None:
+                        self.assertEqual(row[field], value, (name, field))
+                    elif field not in ("front", "fps.interval"):
+                        self.assertEqual(row[field], text, (name, field))
+
+    def test_marks_the_front_of_speed_and_accuracy(self):
+        page, _ = self.make(write_folder(self.root / "run", [
+            cell("a__r0", method="fast", time=10, error=3), cell("b__r0", method="near", time=30, error=1),
+            cell("c__r0", method="both-worse", time=31, error=3), cell("d__r0", method="twin", time=10, error=3),
+            cell("e__r0", method="unmeasured", time=1, pixel_error_px=None)]))
+        marked = {row["method"][0] for row in page.rows("summary") if row["front"][0]}
+        self.assertEqual(marked, {"fast", "near", "twin"})
+        plot = next(p for p in page.data()["plots"] if p["id"] == "set1-trade-time")
+        ringed = {s["name"] for s in plot["series"] for m in s["marks"] if len(m) > 3 and m[3]}
+        self.assertEqual(ringed, marked)
+
+    def test_nothing_out_of_a_file_becomes_markup_or_script(self):
+        reference, _ = self.make(write_folder(self.root / "plain", [
+            cell(f"c{i}__r0", method=f"m{i}", scenario=f"s{i}", params={f"p{i}": f"v{i}"},
+                 warnings=[f"w{i}"]) for i in range(len(HOSTILE))]
+            + [cell(f"f{i}", method=f"m{i}", scenario=f"s{i}", params={f"p{i}": f"u{i}"}, status="failed",
+                    reason="r") for i in range(len(HOSTILE))],
+            run={"warnings": ["w"], "command_line": "c", "commit": "c", "tool_version": "t"}))
+        cells = [cell(f"c{i}__r0", method=h, scenario=h, params={h: "v" + h}, warnings=[h])
+                 for i, h in enumerate(HOSTILE)]
+        cells += [cell(f"f{i}", method=h, scenario=h, params={h: "u" + h}, status="failed", reason=h)
+                  for i, h in enumerate(HOSTILE)]
+        everything = "".join(HOSTILE)
+        run = {"warnings": [everything], "command_line": everything, "commit": everything, "tool_version": everything,
+               "scenarios": [{"name": everything, "text": everything}],
+               "gl": {"renderer": everything, "software": True, "timer_verdict": everything}, everything: everything}
+        page, text = self.make(write_folder(self.root / HOSTILE[1].replace("/", ""), cells, run))
+        tags = {tag for tag, _ in page.elements}
+        self.assertLessEqual(tags, {tag for tag, _ in reference.elements} | {"pre", "details", "summary"})
+        self.assertNotIn("img", tags)
+        for tag, attributes in page.elements:
+            for name, value in attributes.items():
+                self.assertFalse(name.startswith("on"), (tag, name))
+                self.assertNotEqual(name, "style")
+                if name in ("src", "href") and value:
+                    self.assertTrue(value.startswith("#") or value.startswith("data:image/"), value)
+        self.assertEqual(len(page.scripts), 3)  # the data, Chart.js and the page's own
+        self.assertEqual(text.count("</script>"), 3)
+        self.assertNotIn("\u2028", "".join(page.scripts))
+        titles = {p["series"][-1]["name"] for p in page.data()["plots"] if p["id"].endswith("-trade-time")}
+        for hostile in HOSTILE[:5]:
+            self.assertIn(hostile, titles)
+            self.assertIn(hostile, [row["method"][0].split(" " + hostile)[0] for row in page.rows("summary")])
+        self.assertNotIn("\0", text)
+
+    def test_the_page_asks_for_nothing_and_its_policy_forbids_it(self):
+        _, text = self.make(write_folder(self.root / "run", self.cells()))
+        policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', text).group(1)
+        self.assertIn("default-src 'none'", policy)
+        self.assertNotIn("unsafe", policy)
+        self.assertNotIn("http", policy)
+        for kind, start in (("script", "<script>"), ("style", "<style>")):
+            for body in re.findall(rf"{re.escape(start)}(.*?)</{kind}>", text, re.DOTALL):
+                digest = base64.b64encode(hashlib.sha256(body.encode()).digest()).decode()
+                self.assertIn(f"'sha256-{digest}'", policy)
+        outside = re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)
+        self.assertNotRegex(outside, r'(?:src|href)="(?!#|data:)')
+        self.assertNotIn("@import", outside)
+        self.assertNotIn("url(", outside)
+
+    def test_reads_without_a_script(self):
+        page, text = self.make(write_folder(self.root / "run", self.cells()))
+        plots = page.data()["plots"]
+        self.assertGreaterEqual(len(plots), 12)
+        for plot in plots:
+            figure = text[text.index(f'id="{plot["id"]}"'):]
+            figure = figure[:figure.index("</figure>")]
+            self.assertRegex(figure, r'<svg [^>]*role="img" aria-label="[^"]+"')
+            self.assertRegex(figure, r"<(?:path class=\"[sf]\"|circle class=\"f\"|rect class=\"f\")")
+            self.assertNotRegex(figure, r"\bnan\b|\binf\b")
+        tables = [a for tag, a in page.elements if tag == "table"]
+        self.assertEqual(text.count("<caption>"), len(tables))
+        self.assertEqual(re.findall(r"<th(?! scope=\"(?:row|col)\")[^e>]*>", text), [])
+
+    def test_from_several_folders_each_keeps_its_own(self):
+        first = write_folder(self.root / "first", [cell("a__r0", time=10)])
+        second = write_folder(self.root / "second", [cell("a__r0", time=40)])
+        page, text = self.make(first, second)
+        self.assertEqual([row["fps"][1] for row in page.rows("summary")], ["100", "25"])
+        self.assertIn("demo (first)", text)
+        self.assertIn("demo (second)", text)
+
+    def test_pictures_are_embedded_up_to_a_budget_and_the_rest_is_named(self):
+        folder = write_folder(self.root / "run", [cell(f"m{i}__r0", method=f"m{i}") for i in range(3)])
+        for i in range(2):
+            (folder / "shots" / f"m{i}__r0__worst.png").write_bytes(png(64, 48))
+        (folder / "shots" / "m2__r0__worst.png").write_bytes(b"no picture")
+        page, text = self.make(folder)
+        self.assertEqual(text.count("<img "), 2)
+        self.assertNotIn("left out, so that", text)
+        for i in range(3):
+            (folder / "shots" / f"m{i}__r0__worst.png").write_bytes(png(1800, 1100))
+        page, text = self.make(folder)
+        shown = text.count("<img ")
+        self.assertLess(shown, 3)
+        self.assertIn(f"{3 - shown} more pictures are left out", text)
+        self.assertLess(len(text), 5_000_000)
+
+    def test_a_flight_is_drawn_over_its_ground(self):
+        folder = write_folder(self.root / "run", [cell("a__r0")])
+        (folder / "flights" / "demo.json").write_text(json.dumps({
+            "schema_version": 1, "south_west": [0, 0], "north_east": [1000, 2000], "spacing": [10, 10], "rows": 201,
+            "columns": 101, "min_height": 0, "max_height": 99, "positions": [[100, 100, 50], [900, 1900, 50]],
+            "directions": [[0, 1, 0], [1, 0, 0]]}))
+        (folder / "flights" / "demo__hillshade.png").write_bytes(png(50, 100))
+        _, text = self.make(folder)
+        self.assertRegex(text, r'<image href="data:image/(webp|png);base64,')
+        # The south-west is bottom left: x grows, y falls along this flight.
+        way = re.search(r'<path class="way" d="M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)"', text)
+        x0, y0, x1, y1 = map(float, way.groups())
+        self.assertLess(x0, x1)
+        self.assertGreater(y0, y1)
+
+    def test_what_was_not_measured_is_said(self):
+        bare = {k: None for k in ("truth_frames", "screen_error_px", "pixel_error_px", "crack_pixels", "popping_px",
+                                  "bound_honesty", "gpu_bytes")}
+        page, text = self.make(write_folder(self.root / "run", [cell("a__r0", **bare)],
+                                            csv=FRAMES + "0,1.5,7,,\n1,1.5,7,,\n"))
+        self.assertGreaterEqual(text.count("Not measured:"), 4)
+        self.assertEqual(page.rows("summary")[0]["gpu_bytes"], ["-", ""])
+        failed = cell("b__r0", status="crashed", reason="signal 11 in draw", frame_ms=None, fps=None, triangles=None)
+        page, text = self.make(write_folder(self.root / "failed", [failed]))
+        self.assertEqual(page.rows("failures")[0]["reason"][0], "signal 11 in draw")
+        page, text = self.make(write_folder(self.root / "empty", []))
+        self.assertIn("no cell is finished", text)
+
+    def test_a_run_that_is_not_finished_says_so(self):
+        folder = write_folder(self.root / "run", [cell("a__r0")], run={"cells": [{}, {}, {}]})
+        with open(folder / "cells.jsonl", "a") as stream:
+            stream.write('{"cell": "b')
+        _, text = self.make(folder)
+        self.assertIn("2 of the 3 cells that were planned are not flown", text)
+        self.assertIn("the last line of cells.jsonl is incomplete", text)
+
+    def test_damaged_and_foreign_folders_are_refused_and_the_page_stays(self):
+        def damaged(name, damage):
+            folder = write_folder(self.root / name, [cell("a__r0"), cell("b__r0")])
+            damage(folder)
+            return folder
+
+        def change(file, old, new):
+            return lambda folder: (folder / file).write_text((folder / file).read_text().replace(old, new, 1))
+
+        cases = {
+            "absent": (lambda f: (f / "run.json").unlink(), "run.json: there is no such file"),
+            "no-cells": (lambda f: (f / "cells.jsonl").unlink(), "cells.jsonl: there is no such file"),
+            "run-json": (change("run.json", "{", "["), "run.json: this is not JSON"),
+            "schema": (change("run.json", '"schema_version": 1', '"schema_version": 99'),
+                       "schema_version is 99, expected 1"),
+            "line": (lambda f: (f / "cells.jsonl").write_text((f / "cells.jsonl").read_text() + "{oops}\n"),
+                     "cells.jsonl:3: this is not JSON"),
+            "list": (lambda f: (f / "cells.jsonl").write_text("[]\n"), "cells.jsonl:1: no object"),
+            "field": (change("cells.jsonl", '"method"', '"method_"'), "cells.jsonl:1: 'method' is missing"),
+            "type": (change("cells.jsonl", '"params": {}', '"params": 7'), "cells.jsonl:1: 'params' is not an object"),
+            "twice": (change("cells.jsonl", "b__r0", "a__r0"), "cells.jsonl:2: cell 'a__r0' is there twice"),
+            "escape": (change("cells.jsonl", "a__r0", "../a__r0"), "cells.jsonl:1: '../a__r0' is no name"),
+            "frames": (lambda f: (f / "frames" / "b__r0.csv").unlink(), "b__r0.csv: there is no such file"),
+            "number": (lambda f: (f / "frames" / "b__r0.csv").write_text(FRAMES + "0,x,1,,\n"),
+                       "b__r0.csv:2: 'x' in column wall_ms is no number"),
+            "short": (lambda f: (f / "frames" / "b__r0.csv").write_text(FRAMES + "0,1\n"),
+                      "b__r0.csv:2: 2 fields, expected 5"),
+            "cut": (lambda f: (f / "frames" / "b__r0.csv").write_text(frames()[:-3]), "b__r0.csv:6: the line has no end"),
+            "header": (lambda f: (f / "frames" / "b__r0.csv").write_text("a,b\n1,2\n"), "no column 'frame'"),
+            "flight": (lambda f: (f / "flights" / "demo.json").write_text('{"schema_version": 1}'),
+                       "demo.json: 'south_west' is missing"),
+            "deep": (lambda f: (f / "run.json").write_text("[" * 5000), "run.json: this is not JSON"),
+        }
+        self.out.write_text("as it was")
+        for name, (damage, message) in cases.items():
+            with self.subTest(name):
+                status, output = report(BINARY, damaged(name, damage), "-o", self.out, "--csv", self.root / "csv")
+                self.assertEqual(status, 2, output)
+                self.assertIn(message, output)
+                self.assertRegex(output, r";|:\d+:|JSON|missing")
+                self.assertEqual(len(output.splitlines()), 1, output)
+                self.assertEqual(self.out.read_text(), "as it was")
+                self.assertFalse((self.root / "csv").exists())
+        self.assertEqual(report(BINARY, self.root / "nowhere")[0], 2)
+        folder = write_folder(self.root / "good", [cell("a__r0")])
+        self.assertEqual(report(BINARY, folder, folder)[0], 2)
+        self.assertEqual(report(BINARY, folder, "-o", self.root / "no" / "such" / "r.html")[0], 4)
+
+    def large(self, scenario, count=5000):
+        return write_folder(self.root / "large", [
+            cell(f"c{i}__r0", method=f"m{i % 7}", scenario=scenario(i), params={"tau": i}, time=1 + i % 97,
+                 error=1 / (1 + i % 89), warnings=["a warning of this cell"]) for i in range(count)],
+            csv=frames(120))
+
+    def check_large(self, folder):
+        start = time.monotonic()
+        page, text = self.make(folder)
+        seconds = time.monotonic() - start
+        begin = time.monotonic()
+        status, _ = report(BINARY, folder, "-o", self.out)
+        seconds = time.monotonic() - begin
+        print(f"{len(text) / 1e6:.1f} MB in {seconds:.1f} s", file=sys.stderr)
+        self.assertLess(seconds, 10)
+        self.assertLess(len(text.encode()), 30_000_000)
+        self.assertEqual(len(page.rows("cells")), 5000)
+        return text
+
+    def test_5000_settings_of_one_scenario(self):
+        text = self.check_large(self.large(lambda i: "demo"))
+        self.assertRegex(text, "Drawn are 16 of 5000 settings")
+        self.assertIn("The first 400 of 5000 rows", text)
+
+    def test_5000_cells_of_250_scenarios(self):
+        text = self.check_large(self.large(lambda i: f"s{i // 20}"))
+        self.assertIn("Plotted are the first 12 scenarios", text)
+
+
+if __name__ == "__main__":
+    unittest.main()
