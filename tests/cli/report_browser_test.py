@@ -1,0 +1,89 @@
+"""A report as a browser shows it: silent, offline, drawn, within its width, and usable with the keyboard alone. Needs
+Chromium, which nothing else does; exit status 77 without one.
+
+usage: report_browser_test.py LODBENCH_BINARY
+"""
+
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+from devtools import Browser
+from report_page import cell, png, report, write_folder
+
+BINARY = sys.argv.pop(1)
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
+CHART = "Chart.getChart(document.querySelector('#set1-curve-wall_ms canvas'))"
+VISIBLE = f"{CHART}.data.datasets.filter((_, i) => {CHART}.isDatasetVisible(i)).length"
+
+
+class Shown(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        folder = write_folder(pathlib.Path(scratch.name) / "run", [
+            cell(f"m{i}t{tau}r{r}", method="<script>alert(1)</script>" if i == 0 else f"method-{i}", params={"tau": tau},
+                 repetition=r, scenario='"><img src=x onerror=alert(1)>', time=(i + 1) * 7 / tau, error=tau / (i + 1))
+            for i in range(3) for tau in (0.5, 1, 2) for r in range(2)])
+        (folder / "shots" / "m1t1r0__worst.png").write_bytes(png(400, 300))
+        status, output = report(BINARY, folder)
+        self.assertEqual(status, 0, output)
+        self.url = (folder / "report.html").as_uri()
+        self.browser = Browser(CHROMIUM)
+        self.addCleanup(self.browser.close)
+
+    def check_silence(self):
+        for event in self.browser.events:
+            self.assertNotIn(event["method"], ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded",
+                                               "Page.javascriptDialogOpening"), event)
+            if event["method"] == "Network.requestWillBeSent":
+                self.assertRegex(event["params"]["request"]["url"], "^(file|data|about):")
+
+    def test_draws_its_plots_without_a_sound_and_fits(self):
+        for width in (390, 1440):
+            for scheme in ("light", "dark"):
+                with self.subTest(width=width, scheme=scheme):
+                    self.browser.open(self.url, width, scheme)
+                    self.assertTrue(self.browser.evaluate(
+                        "document.documentElement.scrollWidth <= document.documentElement.clientWidth"))
+                    figures, canvases, blank = self.browser.evaluate(
+                        "[document.querySelectorAll('figure.plot').length, document.querySelectorAll('canvas').length, "
+                        "[...document.querySelectorAll('canvas')].filter((c) => c.getContext('2d').getImageData(0, 0, "
+                        "c.width, c.height).data.every((v) => v === 0)).length]")
+                    self.assertGreater(figures, 10)
+                    self.assertEqual((canvases, blank), (figures, 0))
+                    self.check_silence()
+
+    def test_keyboard_alone_hides_a_method_and_turns_an_axis(self):
+        self.browser.open(self.url, 1440, "light")
+        before = self.browser.evaluate(VISIBLE)
+        self.assertEqual(before, 9)
+        turned = hidden = False
+        for _ in range(60):
+            self.browser.press("Tab", 9)
+            kind, outline = self.browser.evaluate(
+                "(() => { const e = document.activeElement; return [e.dataset.toggle ? 'toggle' : e.dataset.log || '', "
+                "getComputedStyle(e).outlineStyle]; })()")
+            if kind == "toggle" and not hidden:
+                self.assertEqual(outline, "solid")
+                self.browser.press(" ", 32, " ")
+                self.assertEqual(self.browser.evaluate(VISIBLE), before - 3)
+                hidden = True
+            if kind == "set1-trade-time":
+                axis = "Chart.getChart(document.querySelector('#set1-trade-time canvas')).scales.x.type"
+                first = self.browser.evaluate(axis)
+                self.browser.press(" ", 32, " ")
+                self.assertNotEqual(self.browser.evaluate(axis), first)
+                turned = True
+                break
+        self.assertTrue(hidden and turned)
+        self.check_silence()
+
+
+if __name__ == "__main__":
+    if CHROMIUM is None:
+        print("skipped: there is no chromium")
+        sys.exit(77)
+    unittest.main()
