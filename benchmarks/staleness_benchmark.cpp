@@ -61,7 +61,7 @@ void staleness_cost(const Options& options) {
         stage.select(camera, {});
         run::FrameRecord record;
         record.triangles = stage.count_primitives();
-        run::FrameMeasurer measurer(stage, kDelta, true);
+        run::FrameMeasurer measurer(stage, kDelta, terrain);
         measurer.take(0, record, nullptr);
         measurer.measure(record);
         run::CellResult result;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <set>
@@ -34,6 +35,7 @@ public:
         info_.spacing = {10, 10};
     }
 
+    [[nodiscard]] std::uint64_t tiles_served() const { return read_so_far().size(); }
     [[nodiscard]] std::vector<TileId> read_so_far() const {
         const std::lock_guard lock(mutex_);
         return read_;

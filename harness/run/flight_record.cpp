@@ -21,24 +21,54 @@ constexpr int kLargestMap = 512;  // pixels
 constexpr double kPlainTone = 168;
 constexpr double kToneRange = 120;
 
-/// The mean height of the samples below each pixel, row by row.
-std::vector<double> mean_heights(const terrain::HeightField& terrain, int width, int height) {
+/// Every 2^l-th sample, row by row.
+struct ThinnedGrid {
+    int rows = 0, columns = 0;
+    std::vector<float> heights;
+};
+
+/// As thin as leaves two samples a pixel along the longer side, so that a terrain on disk gives a
+/// few of its tiles for a map and stays there.
+ThinnedGrid thinned(const Terrain& terrain, int pixels) {
     const TerrainInfo& info = terrain.info();
+    int level = 0;
+    while ((std::max(info.rows, info.columns) - 1) >> (level + 1) >= 2 * pixels) ++level;
+    ThinnedGrid grid{((info.rows - 1) >> level) + 1, ((info.columns - 1) >> level) + 1, {}};
+    grid.heights.resize(std::size_t(grid.rows) * std::size_t(grid.columns));
+    const TilePyramid pyramid = terrain.tiles();
+    std::vector<float> tile(kTileSampleCount);
+    for (int row = 0; row < pyramid.rows(level); ++row) {
+        for (int column = 0; column < pyramid.columns(level); ++column) {
+            terrain.read_tile({level, row, column}, tile);
+            const int top = row * kTileCells, left = column * kTileCells;
+            const int width = std::min(kTileSamples, grid.columns - left);
+            for (int y = 0; y < std::min(kTileSamples, grid.rows - top); ++y) {
+                std::copy_n(&tile[std::size_t(y * kTileSamples)], width,
+                            &grid.heights[std::size_t(top + y) * std::size_t(grid.columns) +
+                                          std::size_t(left)]);
+            }
+        }
+    }
+    return grid;
+}
+
+/// The mean height of the samples below each pixel, row by row.
+std::vector<double> mean_heights(const ThinnedGrid& grid, int width, int height) {
     std::vector<double> means;
     means.reserve(std::size_t(width) * std::size_t(height));
     const auto first = [](int pixel, int pixels, int samples) {
         return int(std::int64_t(pixel) * samples / pixels);
     };
     for (int y = 0; y < height; ++y) {
-        const int top = first(y, height, info.rows);
-        const int bottom = std::max(first(y + 1, height, info.rows), top + 1);
+        const int top = first(y, height, grid.rows);
+        const int bottom = std::max(first(y + 1, height, grid.rows), top + 1);
         for (int x = 0; x < width; ++x) {
-            const int left = first(x, width, info.columns);
-            const int right = std::max(first(x + 1, width, info.columns), left + 1);
+            const int left = first(x, width, grid.columns);
+            const int right = std::max(first(x + 1, width, grid.columns), left + 1);
             double sum = 0;
             for (int row = top; row < bottom; ++row) {
-                const float* samples =
-                    terrain.samples().data() + std::size_t(row) * std::size_t(info.columns);
+                const float* const samples =
+                    &grid.heights[std::size_t(row) * std::size_t(grid.columns)];
                 for (int column = left; column < right; ++column) sum += double(samples[column]);
             }
             means.push_back(sum / (double(bottom - top) * double(right - left)));
@@ -62,14 +92,14 @@ Json::Value pair_json(double x, double y) {
 
 }  // namespace
 
-report::Image hillshade(const terrain::HeightField& terrain, int largest) {
+report::Image hillshade(const Terrain& terrain, int largest) {
     const TerrainInfo& info = terrain.info();
     const double extent_x = info.spacing.x * (info.columns - 1);
     const double extent_y = info.spacing.y * (info.rows - 1);
     const double scale = double(largest) / std::max(extent_x, extent_y);
     const int width = std::clamp(int(std::lround(extent_x * scale)), 1, info.columns);
     const int height = std::clamp(int(std::lround(extent_y * scale)), 1, info.rows);
-    const std::vector<double> heights = mean_heights(terrain, width, height);
+    const std::vector<double> heights = mean_heights(thinned(terrain, largest), width, height);
     const auto at = [&](int x, int y) {
         return heights[std::size_t(std::clamp(y, 0, height - 1)) * std::size_t(width) +
                        std::size_t(std::clamp(x, 0, width - 1))];
@@ -99,9 +129,8 @@ report::Image hillshade(const terrain::HeightField& terrain, int largest) {
     return image;
 }
 
-void record_flight(const fs::path& out, const std::string& name,
-                   const terrain::HeightField& terrain, const scenario::FlightPath& path,
-                   int frames) {
+void record_flight(const fs::path& out, const std::string& name, const Terrain& terrain,
+                   const scenario::FlightPath& path, int frames) {
     const fs::path file = out / "flights" / (name + ".json");
     std::error_code ignored;
     if (fs::exists(file, ignored)) return;

@@ -53,12 +53,13 @@ INSTANTIATE_TEST_SUITE_P(all, TileMethods, testing::ValuesIn(kMethods), [](const
 });
 
 /// Error and crack pixels of one frame.
-run::FrameRecord measured(Flight& flight, const Camera& camera) {
+run::FrameRecord measured(Flight& flight, const Camera& camera,
+                          const std::shared_ptr<const terrain::HeightField>& terrain) {
     run::Stage& stage = flight.stage();
     stage.resize(camera.viewport);
     stage.select(camera, {});
     stage.settle();
-    run::FrameMeasurer measurer(stage, 4.0, true);
+    run::FrameMeasurer measurer(stage, 4.0, terrain);
     run::FrameRecord record;
     record.triangles = stage.count_primitives();
     measurer.take(0, record, nullptr);
@@ -76,7 +77,8 @@ TEST_P(TileMethods, snapping_leaves_no_crack_pixel_skirts_hide_them_and_none_lea
         if (method != "fu") settings.emplace_back("separate_error", "true");
         Flight flight(terrain, "tile_quadtree", method, settings);
         for (const double heading : {50.0, 220.0}) {
-            const run::FrameRecord record = measured(flight, low_camera(terrain->info(), heading));
+            const run::FrameRecord record =
+                measured(flight, low_camera(terrain->info(), heading), terrain);
             cracks[kind] += record.truth.crack_pixels.value();
             skirts[kind] += record.truth.skirt_pixels.value();
             EXPECT_EQ(record.truth.uncovered_samples, 0U);

@@ -9,6 +9,7 @@
 #include "report/json.h"
 #include "report/png.h"
 #include "run/flight_record.h"
+#include "terrain/height_field.h"
 
 namespace lodbench::run {
 namespace {
