@@ -39,16 +39,16 @@ TEST(CommandLine, a_repeatable_option_leaves_what_follows_its_value_alone) {
 
 TEST(CommandLine, an_unknown_method_is_refused_alike_by_every_command) {
     const ScratchFolder folder;
-    const std::string words =
-        "no method 'nope' was found; known: full-grid, hybrid-patches, lindstrom, pgm, "
-        "static-patches, template";
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"describe", "nope"},
           {"mesh", "nope", "-o", "m.ply"},
           {"run", "--method", "nope", "--out", (folder.path() / "out").string()}}) {
         const Finished finished = run_lodbench(arguments, folder.path());
         EXPECT_EQ(finished.status, 2);
-        EXPECT_THAT(finished.output, HasSubstr(words));
+        // Which methods there are is no business of this test.
+        EXPECT_THAT(finished.output, HasSubstr("no method 'nope' was found; known: "));
+        EXPECT_THAT(finished.output, HasSubstr("full-grid, "));
+        EXPECT_THAT(finished.output, HasSubstr(", template"));
     }
 }
 
