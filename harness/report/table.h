@@ -23,7 +23,8 @@ struct TableRow {
 [[nodiscard]] std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells,
                                                std::uint64_t seed);
 
-/// For a terminal: columns aligned, one block a scenario, failures below. For summary.md: Markdown, failures folded.
+/// For a terminal: columns aligned, one block a scenario, failures below. For summary.md: Markdown,
+/// failures folded.
 [[nodiscard]] std::string text_table(const std::vector<TableRow>& rows);
 [[nodiscard]] std::string markdown_table(const std::vector<TableRow>& rows);
 

@@ -65,7 +65,8 @@ bool RunFolder::holds_a_run() const {
 
 void RunFolder::discard() {
     std::error_code ignored;
-    for (const char* part : {"scenarios", "frames", "flights", "logs", "shots", "run.json", ".lock"}) {
+    for (const char* part :
+         {"scenarios", "frames", "flights", "logs", "shots", "run.json", ".lock"}) {
         fs::remove_all(path_ / part, ignored);
     }
     fs::remove(path_, ignored);  // fails, as it should, where something else lies in it
