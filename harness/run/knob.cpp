@@ -66,7 +66,7 @@ private:
         }
         const Place place{scaled(knob), distance(*value, target_)};
         if (!result_.best ||
-            std::abs(place.y) < std::abs(distance(*result_.best->value, target_))) {
+            std::abs(place.y) <= std::abs(distance(*result_.best->value, target_))) {
             result_.best = result_.probes.back();
         }
         if (*value >= target_ * (1 - tolerance_) && *value <= target_ * (1 + tolerance_)) {
@@ -83,13 +83,16 @@ private:
         for (const double direction : {1.0, -1.0}) {
             Place from = *start;
             bool nearer = false;
+            int farther = 0;  // steps in a row
             while (!met()) {
                 const double knob = knob_at(from.x + direction * step());
                 if (scaled(knob) == from.x) break;  // the range's end
                 const std::optional<Place> next = probe(knob);
                 if (!next || met()) break;
                 if ((next->y > 0) != (from.y > 0)) return narrow(from, *next);
-                if (std::abs(next->y) > std::abs(from.y)) break;  // farther away
+                // Once may be chance: where a method is far better than asked, its error is noise.
+                farther = std::abs(next->y) > std::abs(from.y) ? farther + 1 : 0;
+                if (farther == 2) break;
                 nearer = nearer || std::abs(next->y) < std::abs(from.y);
                 from = *next;
             }
@@ -99,9 +102,12 @@ private:
 
     /// One of the two places lies above the target, the other below.
     void narrow(Place one, Place other) {
+        int moved = 0;  // which end the last probe replaced: 1 or 2
+        bool again = false;
         while (true) {
-            // The slope's guess, but never so near an end that the other hardly moves.
-            const double guess = one.y / (one.y - other.y);
+            // The slope's guess, but never so near an end that the other hardly moves; where one
+            // end has moved twice in a row, as at a jump, the middle.
+            const double guess = again ? 0.5 : one.y / (one.y - other.y);
             const double x = one.x + std::clamp(guess, 0.1, 0.9) * (other.x - one.x);
             const double knob = knob_at(x);
             const bool known =
@@ -119,7 +125,10 @@ private:
                 result_.outcome = SearchOutcome::between;
                 return;
             }
-            ((next->y > 0) == (one.y > 0) ? one : other) = *next;
+            const int end = (next->y > 0) == (one.y > 0) ? 1 : 2;
+            (end == 1 ? one : other) = *next;
+            again = end == moved;
+            moved = end;
         }
     }
 

@@ -48,7 +48,8 @@ enum class SearchOutcome {
 
 struct SearchResult {
     SearchOutcome outcome = SearchOutcome::unreachable;
-    std::optional<Probe> best;  ///< nearest to the target by ratio; nothing where all failed
+    std::optional<Probe>
+        best;  ///< nearest to the target by ratio, of equals the last; nothing where all failed
     std::vector<Probe> probes;  ///< in order of time
     bool monotone = true;       ///< all probes rise, or all fall, with the knob (to 2 %)
 };

@@ -97,12 +97,28 @@ TEST(KnobSearch, says_unreachable_with_the_best_there_is_and_does_not_look_the_w
     EXPECT_EQ(flat.best->value, 2.0);
 }
 
+TEST(KnobSearch, goes_on_where_the_error_is_noise_far_below_the_target) {
+    const auto result = searched(kTau, 1, [](double tau) {
+        return tau < 2 ? 0.016 : tau < 10 ? 0.02 : tau < 30 ? 0.0001 : 0.03 * tau;
+    });
+    EXPECT_EQ(result.outcome, SearchOutcome::met);
+    EXPECT_NEAR(*result.best->value, 1, 0.05);
+}
+
 TEST(KnobSearch, between_neighbours_it_gives_the_nearer) {
     const Knob few{"k", true, 1, 64, 8};
     const auto result = searched(few, 10, [](double k) { return k < 20 ? 4.0 : 11.0; });
     EXPECT_EQ(result.outcome, SearchOutcome::between);
     EXPECT_EQ(result.best->value, 11.0);
     EXPECT_GE(result.best->knob, 20);
+}
+
+TEST(KnobSearch, closes_in_on_a_jump_by_halves) {
+    const auto result = searched(
+        kTau, 1, [](double tau) { return tau < 66.27 ? 0.8 : 1.14; }, 40);
+    EXPECT_EQ(result.outcome, SearchOutcome::between);
+    EXPECT_NEAR(result.best->knob, 66.27, 0.1);
+    EXPECT_LE(result.probes.size(), 24U);
 }
 
 TEST(KnobSearch, infinite_and_zero_values_are_far_away_not_lost) {
