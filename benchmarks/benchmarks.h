@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 
 #include "terrain/height_field.h"
 
@@ -31,6 +32,10 @@ struct Options {
         return source;
     }
 };
+
+/// The north-west corner of a terrain, at most `size` samples a side.
+[[nodiscard]] std::shared_ptr<const lodbench::terrain::HeightField> north_west_corner(
+    const Terrain& whole, int size);
 
 /// Seconds of wall clock that `work` takes.
 template <typename Work>

@@ -27,15 +27,6 @@ using multi_context::Traversal;
 
 constexpr int kSizes[] = {1025, 2049, 4097};
 
-std::shared_ptr<const terrain::HeightField> corner_of(const Terrain& whole, int size) {
-    TerrainInfo info = whole.info();
-    info.rows = std::min(info.rows, size);
-    info.columns = std::min(info.columns, size);
-    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
-    whole.read({0, 0, info.rows, info.columns}, heights);
-    return std::make_shared<terrain::HeightField>(info, std::move(heights));
-}
-
 /// From the middle of the southern edge, an eighth of the terrain's side above it.
 Camera camera_of(const TerrainInfo& info, int frame) {
     Camera camera;
@@ -173,14 +164,14 @@ void blocks_cost(const Options& options) {
         "whole/this | all, ms whole/this | traversal ms  blocks\n");
     for (const int size : kSizes) {
         if (size > std::min({options.size, whole->info().rows, whole->info().columns})) break;
-        errors_of(*corner_of(*whole, size), 1, options.repetitions);
+        errors_of(*north_west_corner(*whole, size), 1, options.repetitions);
     }
     fmt::print(
         "  draws   size  picture  delta  blocks | submit ms: a block  all  ratio | to the end: a "
         "block  all  ratio\n");
     for (const int size : kSizes) {
         if (size > std::min({options.size, whole->info().rows, whole->info().columns})) break;
-        const auto terrain = corner_of(*whole, size);
+        const auto terrain = north_west_corner(*whole, size);
         for (const int picture : {64, 640}) {
             for (const double delta : {0.5, 2.0, 8.0}) {
                 const Drawn single = draw(terrain, delta, false, picture, options);

@@ -24,16 +24,6 @@ namespace {
 
 using namespace common;
 
-/// The north-west corner of a terrain.
-terrain::HeightField crop(const Terrain& whole, int size) {
-    TerrainInfo info = whole.info();
-    info.rows = std::min(info.rows, size);
-    info.columns = std::min(info.columns, size);
-    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
-    whole.read({0, 0, info.rows, info.columns}, heights);
-    return {info, std::move(heights)};
-}
-
 /// Floats on huge pages where the system gives them, as LebGrid's vertices are.
 class Floats {
 public:
@@ -97,7 +87,7 @@ void errors_cost(const Options& options) {
     std::vector<double> per_sample;
     for (int size = 1025; size <= options.size; size = 2 * size - 1) {
         if (size > std::max(whole->info().rows, whole->info().columns)) break;
-        LebGrid grid(crop(*whole, size));
+        LebGrid grid(*north_west_corner(*whole, size));
         const double ns = 1e9 / double(grid.vertex_count());
         // Recursion has no parallel form: one time stands for any number of cores.
         const double rpcs = ns * best_of(options.repetitions, [&] {

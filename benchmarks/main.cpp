@@ -6,10 +6,25 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmarks.h"
+
+namespace lodbench::benchmarks {
+
+std::shared_ptr<const terrain::HeightField> north_west_corner(const Terrain& whole, int size) {
+    TerrainInfo info = whole.info();
+    info.rows = std::min(info.rows, size);
+    info.columns = std::min(info.columns, size);
+    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
+    whole.read({0, 0, info.rows, info.columns}, heights);
+    return std::make_shared<terrain::HeightField>(info, std::move(heights));
+}
+
+}  // namespace lodbench::benchmarks
 
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;

@@ -29,15 +29,6 @@ constexpr int kSizes[] = {1025, 2049, 4097};
 constexpr int kSegments = 64;
 constexpr int kFewestFrames = 60;  ///< of the CPU's part
 
-std::shared_ptr<const terrain::HeightField> crop(const Terrain& whole, int size) {
-    TerrainInfo info = whole.info();
-    info.rows = std::min(info.rows, size);
-    info.columns = std::min(info.columns, size);
-    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
-    whole.read({0, 0, info.rows, info.columns}, heights);
-    return std::make_shared<terrain::HeightField>(info, std::move(heights));
-}
-
 Camera camera_of(const TerrainInfo& info, int frame) {
     Camera camera;
     camera.viewport = {1280, 800};
@@ -177,7 +168,7 @@ void print_cpu(const terrain::HeightField& whole, Metric metric, int most_sample
     double most_of_select = 0, most_after_jumps = 0;
     for (const int size : kSizes) {
         if (size > most_samples) break;
-        const auto terrain = crop(whole, size);
+        const auto terrain = north_west_corner(whole, size);
         double before = 0;
         for (const double tau : kTolerances) {
             const common::LebRefiner refiner(*terrain,
@@ -232,7 +223,7 @@ void patches_cost(const Options& options) {
     double most = 0;
     for (const int size : kSizes) {
         if (size > options.size) break;
-        const auto terrain = crop(*whole, size);
+        const auto terrain = north_west_corner(*whole, size);
         for (const double tau : kTolerances) {
             const Flown plain = fly(terrain, "static-patches", tau, options.frames);
             const Flown hybrid = fly(terrain, "hybrid-patches", tau, options.frames);

@@ -34,15 +34,6 @@ std::vector<int> sizes_of(const Options& options, const TerrainInfo& info) {
     return sizes;
 }
 
-std::shared_ptr<const terrain::HeightField> crop(const Terrain& whole, int size) {
-    TerrainInfo info = whole.info();
-    info.rows = std::min(info.rows, size);
-    info.columns = std::min(info.columns, size);
-    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
-    whole.read({0, 0, info.rows, info.columns}, heights);
-    return std::make_shared<terrain::HeightField>(info, std::move(heights));
-}
-
 /// From near one edge towards the opposite one, ten samples above the highest point.
 Camera camera_of(const TerrainInfo& info, int frame) {
     Camera camera;
@@ -128,7 +119,7 @@ void tiles_cost(const Options& options) {
     };
     std::vector<std::pair<int, Row>> rows;
     for (const int size : sizes_of(options, whole->info())) {
-        const auto terrain = crop(*whole, size);
+        const auto terrain = north_west_corner(*whole, size);
         const Selected cpu = select_over(terrain, "sltq-cpu", {}, options.frames);
         const Selected gpu = select_over(terrain, "sltq-gpu", {{"sync", "true"}}, options.frames);
         const Selected layers = select_over(terrain, "dltq", {{"sync", "true"}}, options.frames);
@@ -164,7 +155,7 @@ void tiles_cost(const Options& options) {
     const Row& last = rows.back().second;
     fmt::print("  Y1, dltq < sltq-gpu <= sltq-cpu at {}: {}\n", rows.back().first,
                last.layers < last.gpu && last.gpu <= last.cpu ? "holds" : "does not hold");
-    const auto terrain = crop(*whole, 1025);
+    const auto terrain = north_west_corner(*whole, 1025);
     const Selected one = select_over(terrain, "sltq-cpu", {}, options.frames);
     const Selected separate =
         select_over(terrain, "sltq-cpu", {{"separate_error", "true"}}, options.frames);
