@@ -47,8 +47,9 @@ int run(const VerifyOptions& options) {
     if (report.fault_count > report.faults.size()) {
         fmt::print("{}: {} more\n", options.file, report.fault_count - report.faults.size());
     }
-    fmt::print("{}: {} tiles, {} faults, {:.1f} s, {:.0f} MB/s\n", options.file, report.tiles,
-               report.fault_count, seconds, double(report.bytes) * 1e-6 / seconds);
+    fmt::print("{}: {} tiles, {} {}, {:.1f} s, {:.0f} MB/s\n", options.file, report.tiles,
+               report.fault_count, report.fault_count == 1 ? "fault" : "faults", seconds,
+               double(report.bytes) * 1e-6 / seconds);
     return status;
 }
 

@@ -64,7 +64,7 @@ struct CellResult {
     /// What the method asked of the terrain, and what was read from disk for it, when the timing
     /// replay ended.
     std::uint64_t samples_served = 0, tiles_served = 0, terrain_bytes_read = 0;
-    Counters counters;       ///< means over the frames of the lockstep replay
+    Counters counters;       ///< of the lockstep replay: means over its frames, of `..._so_far` the last
     std::string depth_hash;  ///< at the randomly chosen frame, lockstep
     std::string terrain_name, terrain_checksum;
     std::string plugin_checksum;  ///< of the plugin file: 16 hex digits

@@ -280,7 +280,11 @@ void Flight::fly_in_lockstep() {
         record.triangles = stage_->count_primitives();
         record.draw_calls = stage_->device().draw_calls() - draw_calls;
         record.uploaded_bytes = stage_->method_uploaded_bytes() - uploaded;
-        for (const auto& [name, value] : stage_->counters()) sums[name] += value;
+        for (const auto& [name, value] : stage_->counters()) {
+            // What is counted since the beginning has its last value; of the rest the mean is told.
+            double& sum = sums[name];
+            sum = name.ends_with("_so_far") ? value * scenario_.frames : sum + value;
+        }
         measure_frame(frame);
         if (frame == hashed_frame_) {
             stage_->draw_picture();

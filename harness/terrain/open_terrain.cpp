@@ -39,7 +39,7 @@ void check_store(const TerrainSource& source) {
         if (!given) return;
         throw InputError(
             fmt::format("{}: {} is given, but a tiled store says that itself; leave it out, or "
-                        "import the terrain anew with it",
+                        "import its original file with it",
                         source.file.string(), name));
     };
     refuse("spacing", source.spacing_x || source.spacing_y);

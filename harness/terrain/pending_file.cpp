@@ -28,6 +28,9 @@ PendingFile::PendingFile(std::filesystem::path file) : file_(std::move(file)), p
         throw InputError(fmt::format("{}: the folder {} does not exist; make it first",
                                      file_.string(), folder.string()));
     }
+    if (std::filesystem::is_directory(file_)) {
+        throw InputError(fmt::format("{}: a folder has this name; choose another", file_.string()));
+    }
     pending_ += fmt::format(".{}.part", getpid());
     descriptor_ = base::FileDescriptor(open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode));
     if (descriptor_) return;

@@ -45,14 +45,15 @@ StoredTerrain::StoredTerrain(std::filesystem::path file, bool cold) : file_(std:
 }
 
 void StoredTerrain::open() {
-    descriptor_ = base::FileDescriptor(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
+    descriptor_ = base::FileDescriptor(::open(file_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!descriptor_) {
-        throw InputError(fmt::format("{}: cannot be opened for reading: {}", file_.string(),
-                                     std::strerror(errno)));
+        throw InputError(
+            fmt::format("{}: cannot be opened for reading: {}; check its name and permissions",
+                        file_.string(), std::strerror(errno)));
     }
     struct stat status {};
     if (fstat(descriptor_.number(), &status) != 0 || !S_ISREG(status.st_mode)) {
-        throw InputError(fmt::format("{}: not a regular file", file_.string()));
+        throw InputError(fmt::format("{}: not a regular file; name a tiled store", file_.string()));
     }
     const auto file_bytes = std::uint64_t(status.st_size);
     if (file_bytes < kStoreHeaderBytes) {
@@ -62,9 +63,10 @@ void StoredTerrain::open() {
             file_.string(), file_bytes, kStoreHeaderBytes));
     }
     std::array<std::byte, kStoreHeaderBytes> bytes{};
-    if (read_at(descriptor_.number(), 0, bytes) != Ending::complete) {
-        throw EnvironmentError(
-            fmt::format("{}: the header cannot be read: {}", file_.string(), std::strerror(errno)));
+    if (const Ending ending = read_at(descriptor_.number(), 0, bytes); ending != Ending::complete) {
+        throw EnvironmentError(fmt::format(
+            "{}: the header cannot be read: {}", file_.string(),
+            ending == Ending::error ? std::strerror(errno) : "the file has become shorter"));
     }
     const StoreHeader header = decode_header(bytes, file_bytes, file_);
     info_ = header.info;
@@ -89,6 +91,8 @@ void StoredTerrain::read_index(const StoreHeader& header, std::span<const std::b
             fmt::format("{}: the index of {} tiles needs {} MiB, {} MiB of memory are free",
                         file_.string(), pyramid.count(), needed >> 20, *free >> 20));
     }
+    checksums_.reserve(pyramid.count());
+    summaries_.reserve(pyramid.count());
     base::WordHash hash;
     hash.add(header_bytes.first(kStoreHeaderBytes - 8));
     std::uint64_t place = kStoreHeaderBytes;

@@ -101,7 +101,7 @@ void StoreWriter::round_to_steps(std::span<float> row) {
         const double range = sampling.step * double(highest_ - sampling.lowest);
         throw InputError(fmt::format(
             "terrain '{}': the heights down to row {}, {} to {} m, are more than {} steps of {} m "
-            "apart; give a step of at least {:.3g}",
+            "apart: these rows alone need a step of {:.3g}, the rest may need more",
             header_.info.name, row_number_, sampling.height(sampling.lowest),
             sampling.height(highest_), kMostApart, sampling.step,
             1.01 * range / double(kMostApart)));

@@ -181,6 +181,11 @@ TerrainInfo upsampled(const TerrainInfo& info, const Upsampling& upsampling) {
         refuse(
             fmt::format("a fractal of {} m; it must be 0 or more", upsampling.fractal_amplitude));
     }
+    if (upsampling.fractal_amplitude > 0 && factor == 1) {
+        refuse(
+            "a fractal and a factor of 1, which leaves nothing between the samples; give a factor "
+            "of 2 or more");
+    }
     if (upsampling.fractal_amplitude > 0 && !std::has_single_bit(unsigned(factor))) {
         refuse(fmt::format("a fractal and a factor of {}; with a fractal it must be a power of two",
                            factor));

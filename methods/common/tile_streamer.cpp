@@ -78,6 +78,9 @@ void TileStreamer::update(const TileWishes& wishes) {
     const std::size_t kept = wishes.ancestors.size() - ancestors.size();
     ancestors.resize(std::min(ancestors.size(), room - std::min(room, kept)));
     std::vector<TileId> prefetch = touch(wishes.prefetch, time_of_others());
+    // One that would find no slot would be read again in the next frame, and the next.
+    const std::size_t others = kept + ancestors.size() + wishes.prefetch.size() - prefetch.size();
+    prefetch.resize(std::min(prefetch.size(), room - std::min(room, others)));
 
     // Where a tile is in two lists the first one counts.
     enum class Wish { to_draw, to_stand_in, to_keep_ready };

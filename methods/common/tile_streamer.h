@@ -28,7 +28,7 @@ struct TileStreamerCounts {
     std::uint64_t requested = 0;   ///< leaves that were asked for, in all frames
     std::uint64_t hits = 0;        ///< of them, those that were resident
     std::uint64_t uploaded = 0;    ///< tiles
-    std::uint64_t prefetched = 0;  ///< of them, those that no frame had asked for yet
+    std::uint64_t prefetched = 0;  ///< of them, those that were kept ready for a later frame
     std::uint64_t dropped = 0;     ///< tiles that were read and found no room
     [[nodiscard]] std::uint64_t misses() const { return requested - hits; }
     [[nodiscard]] std::uint64_t bytes() const {

@@ -16,7 +16,7 @@ constexpr ParamSpec kSeparateError = boolean_param(
     "separate_error", false,
     "keeps a tile's error and the height of its cuboid apart; false: one number for both (12)");
 constexpr ParamSpec kPoolTiles =
-    integer_param("pool_tiles", 256, 1, 2048, "tiles that are resident at most, 16.5 KiB each");
+    integer_param("pool_tiles", 256, 2, 2048, "tiles that are resident at most, 16.5 KiB each");
 constexpr ParamSpec kLoaderThreads =
     integer_param("loader_threads", 2, 1, 16, "threads that read tiles");
 constexpr ParamSpec kUploads =

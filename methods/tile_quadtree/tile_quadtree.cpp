@@ -165,7 +165,7 @@ public:
 
 private:
     /// The root has its slot for good.
-    [[nodiscard]] int most_leaves() const { return std::max(options_.streaming.slots - 1, 1); }
+    [[nodiscard]] int most_leaves() const { return options_.streaming.slots - 1; }
 
     void ask_region() { scene_->ask_region(*streamer_); }
 

@@ -176,7 +176,7 @@ TEST_F(StoreCommand, mistakes_end_with_status_2_and_no_file) {
          "--step 1: belongs to tiled stores; write OUT.tiles"},
         {{"import", file("a.raw"), "-o", file("b.tiles"), "--step", "0"}, "a step of 0 m"},
         {{"import", file("a.raw"), "-o", file("b.tiles"), "--step", "0.001"},
-         "more than 65535 steps of 0.001 m apart; give a step of at least 0.0"},
+         "more than 65535 steps of 0.001 m apart: these rows alone need a step of 0.0"},
         {{"upsample", file("a.raw"), "-o", file("b.raw")}, "tiled stores are written as .tiles"},
         {{"upsample", file("a.raw"), "-o", file("b.tiles"), "--factor", "3", "--fractal", "1"},
          "a fractal and a factor of 3"},

@@ -328,6 +328,31 @@ TEST_P(TileMethods, read_what_the_views_need_and_little_else) {
     }
 }
 
+TEST_P(TileMethods, a_tight_pool_reads_no_tile_in_vain_while_the_camera_moves) {
+    FakeTerrain terrain(4097, 4097, rough);
+    // The leaves alone take nearly every slot.
+    Loose loose(terrain, GetParam(), {{"tau", "8"}, {"pool_tiles", "32"}, {"prefetch", "30"}});
+    for (int frame = 0; frame < 150; ++frame) {
+        Camera camera = low_camera(terrain.info(), 90);
+        camera.position = {4000 + 40.0 * frame, 8000, 150};
+        loose.select(camera);
+        std::this_thread::sleep_for(1ms);
+    }
+    // What is asked for of late may have no slot any more when it comes.
+    EXPECT_LE(loose.counter("tiles_dropped_so_far"), 8);
+    EXPECT_LE(double(terrain.tiles_served()), 1.5 * loose.counter("tiles_needed_so_far"));
+}
+
+TEST_P(TileMethods, the_smallest_pool_draws_from_a_corner_too) {
+    FakeTerrain terrain(1025, 1025, rough);
+    Loose loose(terrain, GetParam(), {{"tau", "0.1"}, {"pool_tiles", "2"}});
+    Camera camera = low_camera(terrain.info(), 45);
+    camera.position = {100, 100, 120};  // a corner, where one child of the root is in view
+    for (int frame = 0; frame < 20; ++frame) loose.select(camera);
+    EXPECT_GE(loose.counter("tiles_drawn"), 1);
+    EXPECT_LE(loose.counter("tiles_resident"), 2);
+}
+
 TEST_P(TileMethods, a_pool_that_is_too_small_is_filled_with_the_most_urgent_tiles) {
     FakeTerrain terrain(4097, 4097, rough);
     Loose loose(terrain, GetParam(), {{"pool_tiles", "20"}, {"tau", "0.1"}});

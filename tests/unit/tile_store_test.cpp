@@ -354,7 +354,7 @@ TEST_F(TileStore, is_opened_where_a_terrain_is_and_loaded_where_the_whole_is_nee
         } catch (const InputError& error) {
             EXPECT_EQ(error.what(), "s.toml:3: " + file().string() +
                                         ": spacing is given, but a tiled store says that itself; "
-                                        "leave it out, or import the terrain anew with it");
+                                        "leave it out, or import its original file with it");
         }
     }
     terrain::TerrainSource plane;
