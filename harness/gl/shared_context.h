@@ -17,7 +17,7 @@ public:
     SharedContext& operator=(const SharedContext&) = delete;
 
     /// Makes it current on the calling thread, which has no current context. Throws
-    /// EnvironmentError.
+    /// UnsupportedError where the driver refuses.
     virtual void make_current() = 0;
     /// The reverse, on the same thread.
     virtual void release_current() noexcept = 0;

@@ -279,7 +279,7 @@ public:
         // The bound API is each thread's own.
         if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE ||
             eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
-            throw EnvironmentError("a shared context cannot be made current: " + egl_error());
+            throw UnsupportedError("a shared context cannot be made current: " + egl_error());
         }
     }
     void release_current() noexcept override {

@@ -88,8 +88,8 @@ public:
     /// own.
     void pause() {
         std::unique_lock lock(mutex_);
+        if (!paused_) paused_since_ = Clock::now();
         paused_ = true;
-        paused_since_ = Clock::now();
         changed_.notify_all();
         changed_.wait(lock, [this] { return failure_ || !working_; });
     }

@@ -2,16 +2,15 @@
 // The blocks activity's traversal: Yusuf, Mostafa, Elarif 2014, section 3.3. No GL.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
 #include "api/camera.h"
 #include "api/terrain.h"
+#include "common/view_frustum.h"
 #include "multi_context/block_errors.h"
 #include "multi_context/layout.h"
 
@@ -104,28 +103,6 @@ struct SelectedBlock {
     friend bool operator==(const SelectedBlock&, const SelectedBlock&) = default;
 };
 
-/// Whether a camera may see a box: false only where it lies wholly outside one plane of the
-/// frustum. In double; the slack of a millionth of the distance covers the rounding of the
-/// picture's float arithmetic.
-class BoxVisibility {
-public:
-    explicit BoxVisibility(const Camera& camera)
-        : planes_(camera.frustum_planes()), eye_(camera.position) {}
-    [[nodiscard]] bool may_see(const glm::dvec3& low, const glm::dvec3& high) const {
-        const glm::dvec3 centre = (low + high) * 0.5 - eye_;
-        const glm::dvec3 half = (high - low) * 0.5;
-        const double slack = 1e-6 * (glm::length(centre) + glm::length(half));
-        return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec4& plane) {
-            const glm::dvec3 normal(plane);
-            return glm::dot(normal, centre) + glm::dot(glm::abs(normal), half) + plane.w >= -slack;
-        });
-    }
-
-private:
-    std::array<glm::dvec4, 5> planes_;
-    glm::dvec3 eye_;
-};
-
 /// What a traversal found.
 struct Selection {
     std::vector<SelectedBlock> blocks;
@@ -143,7 +120,7 @@ public:
           ranges_(ranges),
           errors_(errors),
           delta_(delta),
-          visibility_(camera) {}
+          frustum_(camera) {}
 
     void select(Selection& selection) const {
         selection.blocks.clear();
@@ -176,8 +153,8 @@ private:
             terrain_.position(std::min(row + cells, terrain_.rows - 1),
                               std::min(column + cells, terrain_.columns - 1));
         const HeightRange range = ranges_.at(block.lod, block.row, block.column);
-        return visibility_.may_see({north_west.x, south_east.y, range.low},
-                                   {south_east.x, north_west.y, range.high});
+        return frustum_.may_see(
+            {{north_west.x, south_east.y, range.low}, {south_east.x, north_west.y, range.high}});
     }
 
     const TerrainInfo& terrain_;
@@ -185,7 +162,7 @@ private:
     const HeightRanges& ranges_;
     const BlockErrors& errors_;
     float delta_;
-    BoxVisibility visibility_;
+    common::ViewFrustum frustum_;
 };
 
 }  // namespace lodbench::multi_context

@@ -149,9 +149,17 @@ private:
                                   activity_->background().result(), delta_, camera_);
         traversal.select(selection_);
         instances_of_.clear();
+        // The coarsest cell that may lie across an edge: no block that is smaller than it bounds
+        // how low its edge runs.
+        int coarsest = 0;
+        for (const SelectedBlock& block : selection_.blocks)
+            coarsest = std::max(coarsest, block.lod);
         for (const SelectedBlock& block : selection_.blocks) {
             const int cells = layout_.block_cells() << block.lod;
-            const float floor = ranges_.at(block.lod, block.row, block.column).low;
+            int above = 0;  // levels up to the ancestor that holds that cell's edge
+            while (cells << above < 1 << coarsest) ++above;
+            const float floor =
+                ranges_.at(block.lod + above, block.row >> above, block.column >> above).low;
             instances_of_.emplace_back(block.column * cells, block.row * cells, block.lod,
                                        std::bit_cast<std::int32_t>(floor));
         }

@@ -8,8 +8,10 @@
 #include <set>
 #include <thread>
 
+#include "base/hash.h"
 #include "method_fixture.h"
 #include "multi_context_reference.h"
+#include "run/frame_measurer.h"
 
 namespace lodbench::test {
 namespace {
@@ -250,6 +252,46 @@ TEST(MultiContext,
     EXPECT_GT(hanging, surface.vertices.size() / per_block * 16);
 }
 
+TEST(MultiContext, skirts_hide_the_edge_of_a_cell_that_is_longer_than_a_block) {
+    // Rough ground from column 512 on; west of it a ramp that a block of LOD 5 may stand for, whose
+    // cell of 32 samples runs from 216 m down to 0 past two blocks of 16, below the northern one's
+    // lowest sample.
+    TerrainInfo info;
+    info.name = "edge";
+    info.rows = info.columns = 1025;
+    info.spacing = {30, 30};
+    std::vector<float> heights;
+    base::SplitMix64 random(3);
+    for (int row = 0; row < info.rows; ++row) {
+        const double base = row <= 16 ? 216 : std::max(0.0, 13.5 * (32 - row));
+        for (int column = 0; column < info.columns; ++column) {
+            const double west = std::clamp((column - 480) / 32.0, 0.0, 1.0);
+            const bool rough = column > 512 && row < 16;
+            heights.push_back(float(base * west + (rough ? double(random.below(300)) : 0.0)));
+        }
+    }
+    const auto terrain = std::make_shared<terrain::HeightField>(info, std::move(heights));
+    Camera camera = camera_at({12360, 30360, 300}, 90, 0);
+    camera.viewport = {640, 480};
+    camera.near_plane = 10;
+    std::uint64_t cracks[2] = {};
+    for (const int skirts : {0, 1}) {
+        Flight flight(terrain, "multi_context", "multi-context",
+                      with(20, {{"cracks", skirts == 1 ? "skirt" : "none"}}));
+        flight.stage().resize(camera.viewport);
+        flight.stage().select(camera, {});
+        flight.stage().settle();
+        run::FrameMeasurer measurer(flight.stage(), std::nullopt, terrain);
+        run::FrameRecord record;
+        record.triangles = flight.stage().count_primitives();
+        measurer.take(0, record, nullptr);
+        measurer.measure(record);
+        cracks[skirts] = record.truth.crack_pixels.value();
+    }
+    EXPECT_GT(cracks[0], 100U);
+    EXPECT_EQ(cracks[1], 0U);
+}
+
 TEST(MultiContext, is_skipped_where_the_driver_gives_no_second_context) {
     run::VitalSigns signs;
     run::Stage stage({hills(65, 65),
@@ -274,7 +316,7 @@ TEST(MultiContext, is_skipped_where_the_driver_gives_no_second_context) {
 /// A context that cannot be made current.
 class Refusing final : public gl::SharedContext {
 public:
-    void make_current() override { throw EnvironmentError("cannot be made current"); }
+    void make_current() override { throw UnsupportedError("cannot be made current"); }
     void release_current() noexcept override {}
 };
 
@@ -289,7 +331,7 @@ TEST(MultiContext, ends_cleanly_where_its_thread_cannot_start) {
     const gl::ObjectCounts before = stage.device().objects();
     stage.device().set_context_factory([] { return std::make_unique<Refusing>(); });
     stage.prepare();
-    EXPECT_THROW(stage.upload(), run::MethodFailure);
+    EXPECT_THROW(stage.upload(), run::MethodSkipped);
     stage.release();
     EXPECT_EQ(stage.device().objects(), before);
 }
