@@ -78,7 +78,7 @@ TEST(ReferencePicture, is_full_grids_to_the_bit_over_the_demo) {
     const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(demo.terrain);
     const auto path = scenario::make_path(demo.path, demo.frames, demo.rate_hz, *terrain);
     Flight flight(terrain, "full_grid", "full-grid");
-    for (const int frame : {0, 31, 60, 90, 119}) {
+    for (const int frame : {0, 31, 60, 90, 99}) {
         SCOPED_TRACE(frame);
         Camera camera;
         camera.vertical_fov = demo.vertical_fov;

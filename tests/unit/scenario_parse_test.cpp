@@ -352,7 +352,7 @@ TEST(Overrides, replace_what_they_name_and_are_checked) {
 TEST(Demo, is_a_scenario_over_the_embedded_terrain) {
     const Scenario scenario = load_scenario(kFolder / "demo.toml");
     EXPECT_EQ(scenario.name, "demo");
-    EXPECT_EQ(scenario.frames, 120);
+    EXPECT_EQ(scenario.frames, 100);
     EXPECT_EQ(scenario.viewport, (Viewport{640, 480}));
     EXPECT_TRUE(std::filesystem::exists(scenario.terrain.file));
 }

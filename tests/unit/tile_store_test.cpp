@@ -141,8 +141,10 @@ TEST_F(TileStore, of_steps_reaches_over_65535_of_them_wherever_they_lie) {
             terrain::write_store(wider, 1, file("b.tiles"));
             ADD_FAILURE();
         } catch (const InputError& error) {
-            EXPECT_THAT(error.what(), HasSubstr("more than 65535 steps of 1 m apart; give a step "
-                                                "of at least 1.01"));
+            EXPECT_THAT(
+                error.what(),
+                HasSubstr(
+                    "more than 65535 steps of 1 m apart: these rows alone need a step of 1.01"));
         }
     }
     const HeightField high(grid("high", 2, 2), {9e6F, 9e6F, 9e6F, 9e6F});
@@ -315,9 +317,9 @@ TEST_F(TileStore, is_written_whole_or_not_at_all) {
     EXPECT_THROW(terrain::write_store(field, std::nullopt, file("a.raw")), InputError);
     EXPECT_THROW(terrain::write_store(field, std::nullopt, file("none/a.tiles")), InputError);
     EXPECT_THROW(terrain::write_store(field, std::nullopt, "/proc/a.tiles"), EnvironmentError);
-    // Refused at the very end: a file does not take the place of a folder.
+    // A file does not take the place of a folder.
     std::filesystem::create_directory(file("d.tiles"));
-    EXPECT_THROW(terrain::write_store(field, std::nullopt, file("d.tiles")), EnvironmentError);
+    EXPECT_THROW(terrain::write_store(field, std::nullopt, file("d.tiles")), InputError);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 2);
     TerrainInfo info = field.info();
     info.name = std::string(257, 'n');
