@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <memory>
 
 #include "api/error.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "report/aligned_table.h"
 #include "report/cell_groups.h"
 #include "report/json.h"
 #include "report/results.h"
@@ -28,32 +30,34 @@ std::string px(const Json::Value& value) {
 }
 
 std::string economy_text(const std::vector<Json::Value>& cells) {
-    std::string text;
+    using Lines = std::vector<std::vector<std::string>>;
+    std::map<std::string, Lines> scenarios;
     std::string failures;
-    std::string scenario;
+    const auto count = [](const Json::Value& value) { return fmt::format("{}", value.asUInt64()); };
     for (const report::CellGroup& group : report::group_cells(cells)) {
-        if (group.scenario != scenario) {
-            scenario = group.scenario;
-            text += fmt::format("{}## {}\n\n", text.empty() ? "" : "\n", scenario);
-            text += fmt::format("| {:<28} | {:>6} | {:>9} | {:>10} | {:>10} | {:>10} | {:>7} |\n",
-                                "method", "frame", "max px", "triangles", "would do", "full grid",
-                                "ratio");
-            text += fmt::format("|{:-<30}|{:->7}:|{:->10}:|{:->11}:|{:->11}:|{:->11}:|{:->8}:|\n",
-                                "", "", "", "", "", "", "");
-        }
+        Lines& lines =
+            scenarios
+                .try_emplace(group.scenario, Lines{{"method", "frame", "max px", "triangles",
+                                                    "would do", "full grid", "ratio"}})
+                .first->second;
         for (const std::string& failure : report::failures_of(group)) {
             failures += fmt::format("- {}, {}: {}\n", group.label, group.scenario, failure);
         }
         for (const Json::Value* cell : group.good) {
             for (const Json::Value& frame : (*cell)["economy"]) {
-                text += fmt::format(
-                    "| {:<28} | {:>6} | {:>9} | {:>10} | {:>10} | {:>10} | {:>7} |\n", group.label,
-                    frame["frame"].asInt(), px(frame["target_px"]), frame["triangles"].asUInt64(),
-                    frame["minimal_triangles"].asUInt64(), frame["full_triangles"].asUInt64(),
-                    frame["ratio"].isNumeric() ? fmt::format("{:.2f}", frame["ratio"].asDouble())
-                                               : "-");
+                const Json::Value& ratio = frame["ratio"];
+                lines.push_back(
+                    {group.label, fmt::format("{}", frame["frame"].asInt()), px(frame["target_px"]),
+                     count(frame["triangles"]), count(frame["minimal_triangles"]),
+                     count(frame["full_triangles"]),
+                     ratio.isNumeric() ? fmt::format("{:.2f}", ratio.asDouble()) : "-"});
             }
         }
+    }
+    std::string text;
+    for (const auto& [scenario, lines] : scenarios) {
+        text += fmt::format("{}## {}\n\n{}", text.empty() ? "" : "\n", scenario,
+                            report::aligned_table(lines));
     }
     return text + (failures.empty() ? "" : "\n" + failures);
 }

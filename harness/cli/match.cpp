@@ -10,6 +10,7 @@
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/trade_options.h"
+#include "report/aligned_table.h"
 #include "report/json.h"
 #include "report/results.h"
 #include "run/locations.h"
@@ -57,19 +58,17 @@ std::string number_text(const std::optional<double>& value) {
 
 /// What was found, a line a method.
 std::string search_text(const std::vector<run::MatchedMethod>& methods) {
-    std::string text = fmt::format("| {:<16} | {:<22} | {:>12} | {:<11} | {:>6} |\n", "method",
-                                   "knob", "achieved", "outcome", "probes");
-    text += fmt::format("|{:-<18}|{:-<24}|{:->13}:|{:-<13}|{:->7}:|\n", "", "", "", "", "");
+    std::vector<std::vector<std::string>> lines = {
+        {"method", "knob", "achieved", "outcome", "probes"}};
     std::string remarks;
     for (const run::MatchedMethod& method : methods) {
         const auto& best = method.search.best;
         const std::string knob = !method.knob ? "exact: none"
                                  : best ? fmt::format("{} = {:.6g}", method.knob->name, best->knob)
                                         : method.knob->name;
-        text += fmt::format("| {:<16} | {:<22} | {:>12} | {:<11} | {:>6} |\n", method.method, knob,
-                            number_text(best ? best->value : std::nullopt),
-                            method.knob ? name_of(method.search.outcome) : "-",
-                            method.search.probes.size());
+        lines.push_back({method.method, knob, number_text(best ? best->value : std::nullopt),
+                         method.knob ? name_of(method.search.outcome) : "-",
+                         fmt::format("{}", method.search.probes.size())});
         if (!method.search.monotone) {
             remarks += fmt::format(
                 "- {}: what was measured neither rises nor falls throughout with "
@@ -81,7 +80,7 @@ std::string search_text(const std::vector<run::MatchedMethod>& methods) {
                                    method.failure);
         }
     }
-    return text + (remarks.empty() ? "" : "\n" + remarks);
+    return report::aligned_table(lines) + (remarks.empty() ? "" : "\n" + remarks);
 }
 
 int match(Options& options) {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "api/error.h"
+#include "report/aligned_table.h"
 #include "report/cell_groups.h"
 #include "report/json.h"
 
@@ -35,29 +36,6 @@ std::vector<TradePoint> points_of(std::span<const TradeRow> rows) {
     std::vector<TradePoint> points;
     for (const TradeRow& row : rows) points.push_back(row.point());
     return points;
-}
-
-/// Columns of equal width, so that the Markdown reads well as text too.
-std::string aligned(const std::vector<std::vector<std::string>>& lines) {
-    std::vector<std::size_t> widths(lines.front().size(), 3);
-    for (const auto& line : lines) {
-        for (std::size_t i = 0; i < line.size(); ++i)
-            widths[i] = std::max(widths[i], line[i].size());
-    }
-    std::string text;
-    for (std::size_t l = 0; l < lines.size(); ++l) {
-        for (std::size_t i = 0; i < widths.size(); ++i) {
-            text += i == 0 ? fmt::format("| {:<{}} ", lines[l][i], widths[i])
-                           : fmt::format("| {:>{}} ", lines[l][i], widths[i]);
-        }
-        text += "|\n";
-        if (l != 0) continue;
-        for (std::size_t i = 0; i < widths.size(); ++i) {
-            text += "|" + std::string(widths[i] + 1, '-') + (i == 0 ? "-" : ":");
-        }
-        text += "|\n";
-    }
-    return text;
 }
 
 std::string text_of(const std::optional<double>& value, const char* format, double unit = 1) {
@@ -220,7 +198,7 @@ std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
                 failures.push_back(row.label + ", " + failure);
             }
         }
-        text += aligned(lines);
+        text += aligned_table(lines);
         for (const std::string& failure : failures) text += fmt::format("\n- {}", failure);
         if (!failures.empty()) text += "\n";
         const auto corner = reference ? reference : reference_point(scenario);
@@ -238,7 +216,7 @@ std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
         }
         volumes.push_back(
             {"all", fmt::format("{:.4f}", hypervolume(points_of(scenario), *corner))});
-        text += aligned(volumes);
+        text += aligned_table(volumes);
     });
     return text;
 }
