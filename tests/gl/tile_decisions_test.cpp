@@ -3,41 +3,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <random>
-#include <sstream>
 
 #include "context_for_test.h"
 #include "fake_terrain.h"
 #include "gl/frame_blocks.h"
+#include "room_shaders.h"
 #include "terrain/height_field.h"
 #include "tile_quadtree/tile_decisions.h"
 #include "tile_quadtree/visible_tiles.h"
 
 namespace lodbench::tile_quadtree {
 namespace {
-
-/// The room's shaders, from its folder.
-class RoomShaders {
-public:
-    RoomShaders() {
-        for (const char* name : {"tile_metric.glsl", "decide.vert", "decide.frag", "decide.comp"}) {
-            std::ifstream stream(std::string(LODBENCH_SOURCE_DIR "/methods/tile_quadtree/") + name);
-            std::ostringstream text;
-            text << stream.rdbuf();
-            texts_.push_back(text.str());
-            names_.emplace_back(name);
-        }
-        for (std::size_t i = 0; i < texts_.size(); ++i) {
-            sources_.push_back({names_[i].c_str(), texts_[i].c_str()});
-        }
-    }
-    [[nodiscard]] std::span<const gl::ShaderSource> get() const { return sources_; }
-
-private:
-    std::vector<std::string> names_, texts_;
-    std::vector<gl::ShaderSource> sources_;
-};
 
 std::shared_ptr<const terrain::HeightField> puget() {
     terrain::TerrainSource source;
@@ -80,7 +57,7 @@ TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) 
     const auto terrain = std::string(name) == "puget" ? puget() : ridged();
     const platform::Context context("");
     gl::Device device;
-    const RoomShaders shaders;
+    const test::RoomShaders shaders("tile_quadtree");
     const TileCatalogue catalogue(*terrain);
     const TileMetric metric(catalogue, kind);
     std::vector<TileId> tiles;
@@ -155,7 +132,7 @@ TEST(TileTexture, of_more_tiles_than_a_row_of_texels_has_gives_each_its_own_deci
     });
     const platform::Context context("");
     gl::Device device;
-    const RoomShaders shaders;
+    const test::RoomShaders shaders("tile_quadtree");
     const TileCatalogue catalogue(terrain);
     std::vector<TileId> tiles;
     collect_from_one_tree(catalogue, catalogue.whole(), catalogue.pyramid().root(), tiles);

@@ -2,11 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <chrono>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <thread>
 
 #include "common/tile_streamer.h"
@@ -14,6 +11,7 @@
 #include "fake_terrain.h"
 #include "gl/frame_blocks.h"
 #include "method_fixture.h"
+#include "room_shaders.h"
 #include "tile_quadtree/tile_scene.cpp"  // the room is a plugin, not a library
 
 namespace lodbench::common {
@@ -165,24 +163,6 @@ TEST_F(Streaming, is_released_under_load) {
 namespace lodbench::tile_quadtree {
 namespace {
 
-/// The room's shaders, from its folder.
-struct RoomShaders {
-    std::array<std::string, 5> texts;
-    std::array<const char*, 5> names = {"tile_vertex.glsl", "tile.vert", "region.vert",
-                                        "region.frag", "tile_metric.glsl"};
-    std::vector<gl::ShaderSource> sources;
-    RoomShaders() {
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            std::ifstream stream(std::string(LODBENCH_SOURCE_DIR "/methods/tile_quadtree/") +
-                                 names[i]);
-            std::ostringstream text;
-            text << stream.rdbuf();
-            texts[i] = text.str();
-            sources.push_back({names[i], texts[i].c_str()});
-        }
-    }
-};
-
 /// The samples that a camera with a field of view wider by `widening` has in view.
 SampleBox samples_in_view(const terrain::HeightField& terrain, const Camera& camera,
                           double widening) {
@@ -223,12 +203,12 @@ TEST(VisibleRegion, holds_all_ground_in_view_hidden_or_not_and_not_a_tile_more) 
     const TerrainInfo& info = terrain->info();
     const platform::Context context("");
     gl::Device device;
-    const RoomShaders shaders;
+    const test::RoomShaders shaders("tile_quadtree");
     const TileCatalogue catalogue(*terrain);
     common::TileStreamer streamer(*terrain, {});
     streamer.upload(device, "test: tiles");
     TileScene scene(Cracks::snap, 64);
-    scene.upload(device, shaders.sources, 256);
+    scene.upload(device, shaders.get(), 256);
     gl::Buffer frozen(device, "test: Frozen", sizeof(gl::Frozen));
     std::vector<TileId> tiles;
     std::vector<DrawnTile> drawn;
