@@ -33,24 +33,33 @@ std::string economy_text(const std::vector<Json::Value>& cells) {
     using Lines = std::vector<std::vector<std::string>>;
     std::map<std::string, Lines> scenarios;
     std::string failures;
-    const auto count = [](const Json::Value& value) { return fmt::format("{}", value.asUInt64()); };
+    const auto count = [](const Json::Value& value) {
+        return value.isUInt64() ? fmt::format("{}", value.asUInt64()) : "-";
+    };
     for (const report::CellGroup& group : report::group_cells(cells)) {
         Lines& lines =
             scenarios
-                .try_emplace(group.scenario, Lines{{"method", "frame", "max px", "triangles",
-                                                    "would do", "full grid", "ratio"}})
+                .try_emplace(group.scenario,
+                             Lines{{"method", "frame", "triangles", "full grid", "P99.9 px",
+                                    "would do", "ratio", "max px", "would do", "ratio"}})
                 .first->second;
         for (const std::string& failure : report::failures_of(group)) {
             failures += fmt::format("- {}, {}: {}\n", group.label, group.scenario, failure);
         }
         for (const Json::Value* cell : group.good) {
             for (const Json::Value& frame : (*cell)["economy"]) {
-                const Json::Value& ratio = frame["ratio"];
-                lines.push_back(
-                    {group.label, fmt::format("{}", frame["frame"].asInt()), px(frame["target_px"]),
-                     count(frame["triangles"]), count(frame["minimal_triangles"]),
-                     count(frame["full_triangles"]),
-                     ratio.isNumeric() ? fmt::format("{:.2f}", ratio.asDouble()) : "-"});
+                std::vector<std::string> line = {
+                    group.label, fmt::format("{}", frame["frame"].asInt()),
+                    count(frame["triangles"]), count(frame["full_triangles"])};
+                for (const char* bound : {"p999", "max"}) {
+                    const Json::Value& fewest = report::member_of(frame, bound);
+                    line.push_back(px(report::member_of(fewest, "target_px")));
+                    line.push_back(count(report::member_of(fewest, "minimal_triangles")));
+                    const Json::Value& ratio = report::member_of(fewest, "ratio");
+                    line.push_back(ratio.isNumeric() ? fmt::format("{:.2f}", ratio.asDouble())
+                                                     : "-");
+                }
+                lines.push_back(std::move(line));
             }
         }
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <queue>
 #include <tuple>
 
@@ -33,14 +34,18 @@ std::int64_t ceiling_of(std::int64_t a, std::int64_t b) {
 
 class Greedy {
 public:
-    Greedy(const ReferenceTerrain& terrain, const Camera& camera)
+    Greedy(const ReferenceTerrain& terrain, const Camera& camera, double target_px,
+           ErrorBound bound)
         : terrain_(terrain),
+          target_px_(target_px),
+          bound_(bound),
           columns_(terrain.info().columns),
           delaunay_(columns_ - 1, terrain.info().rows - 1),
           pixels_(camera),
           box_in_view_(camera, kSlack),
           planes_(camera.frustum_planes()),
-          eye_(camera.position) {
+          eye_(camera.position),
+          errors_(terrain.heights().size(), kOutOfView) {
         const TerrainInfo& info = terrain.info();
         corner_ = pixels_.local({info.position(0, 0), 0});
         east_ = pixels_.turned({info.spacing.x, 0, 0});
@@ -48,7 +53,7 @@ public:
         up_ = pixels_.turned({0, 0, 1});
     }
 
-    GreedyTriangulation run(double target_px) {
+    GreedyTriangulation run() {
         std::vector<std::int32_t> changed = {0, 1};
         rate(changed);
         double greatest = 0;
@@ -58,7 +63,7 @@ public:
                 queue_.pop();
                 continue;
             }
-            if (px <= target_px) {
+            if (is_met(px)) {
                 greatest = px;
                 break;
             }
@@ -72,6 +77,26 @@ public:
 
 private:
     using Entry = std::tuple<double, std::int32_t, std::uint32_t>;  // px, triangle, version
+
+    [[nodiscard]] bool is_met(double greatest) const {
+        if (bound_ == ErrorBound::max) return greatest <= target_px_;
+        return over_target_ <= in_view_ - p999_rank(in_view_);
+    }
+
+    /// Of so many errors in rising order, how many are no greater than their P99.9.
+    static std::uint64_t p999_rank(std::uint64_t errors) { return errors - errors / 1000; }
+
+    /// A sample's error, or kOutOfView.
+    void note(std::size_t sample, float px) {
+        float& noted = errors_[sample];
+        const auto count = [this](float error, std::uint64_t step) {
+            in_view_ += error != kOutOfView ? step : 0;
+            over_target_ += double(error) > target_px_ ? step : 0;
+        };
+        count(noted, ~std::uint64_t{0});
+        count(px, 1);
+        noted = px;
+    }
 
     [[nodiscard]] double height(const Delaunay::Vertex& vertex) const {
         return double(terrain_.heights()[std::size_t(vertex.y) * std::size_t(columns_) +
@@ -87,7 +112,7 @@ private:
         for (const std::int32_t triangle : triangles) {
             const auto i = std::size_t(triangle);
             ++versions_[i];
-            worst_[i] = worst_of(delaunay_.triangles()[i]);
+            worst_[i] = evaluate(delaunay_.triangles()[i]);
             if (worst_[i].px > 0) queue_.emplace(worst_[i].px, triangle, versions_[i]);
         }
     }
@@ -101,7 +126,8 @@ private:
         return box_in_view_({south_west, range.low}, {north_east, range.high});
     }
 
-    [[nodiscard]] Worst worst_of(const Delaunay::Triangle& triangle) const {
+    /// Notes the error of each sample of the triangle.
+    [[nodiscard]] Worst evaluate(const Delaunay::Triangle& triangle) {
         std::array<Delaunay::Vertex, 3> v;
         for (std::size_t i = 0; i < 3; ++i) {
             v[i] = delaunay_.vertices()[std::size_t(triangle.vertices[i])];
@@ -109,7 +135,7 @@ private:
         const auto [west, east] = std::minmax({v[0].x, v[1].x, v[2].x});
         const auto [north, south] = std::minmax({v[0].y, v[1].y, v[2].y});
         Worst worst;
-        if (!may_be_in_view({north, west, south - north + 1, east - west + 1})) return worst;
+        const bool seen = may_be_in_view({north, west, south - north + 1, east - west + 1});
         // The plane through the corners: z = first + slope_x (x - x0) + slope_y (y - y0).
         const double first = height(v[0]), z1 = height(v[1]) - first, z2 = height(v[2]) - first;
         const double x1 = v[1].x - v[0].x, y1 = v[1].y - v[0].y;
@@ -134,8 +160,8 @@ private:
                 to = std::max(to, p->x + floor_of(run, q->y - p->y));
             }
             const double row_height = first + slope_y * (y - v[0].y);
-            const float* const heights =
-                &terrain_.heights()[std::size_t(y) * std::size_t(columns_)];
+            const std::size_t row = std::size_t(y) * std::size_t(columns_);
+            const float* const heights = &terrain_.heights()[row];
             const glm::dvec3 row_place = corner_ + south_ * double(y);
             for (auto x = std::int32_t(from); x <= std::int32_t(to); ++x) {
                 const double z = double(heights[x]);
@@ -143,8 +169,12 @@ private:
                 const glm::dvec3 place = row_place + east_ * double(x);
                 const glm::dvec3 truth = place + up_ * z;
                 const glm::dvec3 drawn = place + up_ * drawn_z;
-                if (!pixels_.in_view(truth) && !pixels_.in_view(drawn)) continue;
+                if (!seen || (!pixels_.in_view(truth) && !pixels_.in_view(drawn))) {
+                    note(row + std::size_t(x), kOutOfView);
+                    continue;
+                }
                 const double px = pixels_.distance(truth, drawn).px;
+                note(row + std::size_t(x), float(px));
                 if (px > worst.px && !is_corner(v, x, y)) worst = {px, {x, y}};
             }
         }
@@ -188,9 +218,21 @@ private:
         return count;
     }
 
+    [[nodiscard]] double p999() const {
+        std::vector<float> errors;
+        errors.reserve(in_view_);
+        std::ranges::copy_if(errors_, std::back_inserter(errors),
+                             [](float px) { return px != kOutOfView; });
+        if (errors.empty()) return 0;
+        const auto at = errors.begin() + std::ptrdiff_t(p999_rank(errors.size()) - 1);
+        std::ranges::nth_element(errors, at);
+        return double(*at);
+    }
+
     GreedyTriangulation result(double greatest) const {
         GreedyTriangulation result;
         result.max_px = greatest;
+        result.p999_px = p999();
         result.full_in_view = full_grid_in_view();
         for (const Delaunay::Vertex& vertex : delaunay_.vertices()) {
             result.vertices.push_back({vertex.y, vertex.x});
@@ -209,14 +251,20 @@ private:
         return result;
     }
 
+    static constexpr float kOutOfView = -1;
+
     const ReferenceTerrain& terrain_;
+    double target_px_;
+    ErrorBound bound_;
     int columns_;
     Delaunay delaunay_;
     PixelProjection pixels_;
     BoxInView box_in_view_;
     std::array<glm::dvec4, 5> planes_;
     glm::dvec3 eye_;
-    glm::dvec3 corner_, east_, south_, up_;  ///< sample (0, 0) at height 0, and steps from it
+    glm::dvec3 corner_, east_, south_, up_;        ///< sample (0, 0) at height 0, and steps from it
+    std::vector<float> errors_;                    ///< pixels, of each sample
+    std::uint64_t in_view_ = 0, over_target_ = 0;  ///< samples
     std::vector<Worst> worst_;
     std::vector<std::uint32_t> versions_;  ///< of each triangle: an entry of another is stale
     std::priority_queue<Entry> queue_;
@@ -225,12 +273,12 @@ private:
 }  // namespace
 
 GreedyTriangulation greedy_triangulation(const ReferenceTerrain& terrain, const Camera& camera,
-                                         double target_px) {
+                                         double target_px, ErrorBound bound) {
     if (!(target_px >= 0)) {
         throw ContractError(
             fmt::format("greedy_triangulation: a target of {} px, expected at least 0", target_px));
     }
-    return Greedy(terrain, camera).run(target_px);
+    return Greedy(terrain, camera, target_px, bound).run();
 }
 
 CapturedSurface surface_of(const GreedyTriangulation& triangulation,

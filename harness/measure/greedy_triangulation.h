@@ -5,7 +5,7 @@
 // Greedy insertion (Garland and Heckbert, Fast polygonal approximation of terrains and height
 // fields, 1995) into a Delaunay triangulation of the plan, with the screen error of this frame's
 // camera in place of their vertical error: the sample in view with the greatest error becomes a
-// vertex, until no error exceeds the target. Not the minimum, which is hard to find, but an upper
+// vertex, until the error meets its target. Not the minimum, which is hard to find, but an upper
 // bound of it that sees every sample.
 
 #include <algorithm>
@@ -30,19 +30,21 @@ struct GreedyTriangulation {
     std::vector<std::array<std::uint32_t, 3>>
         triangles;              ///< of the whole extent, counter-clockwise
     double max_px = 0;          ///< greatest screen error of a sample in view
+    double p999_px = 0;         ///< nearest-rank P99.9 of those errors
     std::uint64_t in_view = 0;  ///< triangles that are not wholly outside a plane of the frustum
     std::uint64_t full_in_view = 0;  ///< the same of the full grid, two a cell
-
-    /// The better of the two: no more is ever needed.
-    [[nodiscard]] std::uint64_t minimal() const { return std::min(in_view, full_in_view); }
 };
+
+/// What is to be no greater than a target: the errors' maximum, or their nearest-rank P99.9.
+enum class ErrorBound { max, p999 };
 
 /// `target_px`: at least 0; screen error as measure_samples has it, over samples of which the true
 /// or the drawn point lies in view. The same to the bit each time; on one thread. Throws
 /// ContractError for a target that is NaN or negative, or a grid of more than 32769 rows or
 /// columns, beyond which the exact predicates overflow.
 [[nodiscard]] GreedyTriangulation greedy_triangulation(const ReferenceTerrain& terrain,
-                                                       const Camera& camera, double target_px);
+                                                       const Camera& camera, double target_px,
+                                                       ErrorBound bound = ErrorBound::max);
 
 /// Its triangles as if a method had drawn them, to be measured like any other.
 [[nodiscard]] CapturedSurface surface_of(const GreedyTriangulation& triangulation,

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "api/error.h"
-#include "measure/greedy_triangulation.h"
 
 namespace lodbench::measure {
 
@@ -177,19 +176,30 @@ void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixe
                                    worst_->map_columns);
 }
 
-void TruthMeter::find_economy(std::uint64_t triangles) {
-    if (!now_.measured) throw ContractError("TruthMeter::find_economy: no frame was measured");
-    const std::optional<double> target = frame_screen_.summary(false).max_covered;
-    if (!target) return;
-    const GreedyTriangulation greedy = greedy_triangulation(terrain_, now_.camera, *target);
+Fewest TruthMeter::find_fewest(double target_px, ErrorBound bound) const {
+    const GreedyTriangulation greedy =
+        greedy_triangulation(terrain_, now_.camera, target_px, bound);
     std::vector<float> displacements(terrain_.heights().size());
     DrawnSurface(surface_of(greedy, terrain_, now_.camera), terrain_.info())
         .displacements(terrain_.heights(), displacements);
     ErrorPool all, visible;
-    const SampleErrors errors =
-        measure_samples(terrain_, now_.camera, displacements, kInfinity, all, visible);
-    total_.economy.push_back({now_.frame, *target, triangles, greedy.minimal(), greedy.in_view,
-                              greedy.full_in_view, std::max(errors.worst.px, 0.0)});
+    (void)measure_samples(terrain_, now_.camera, displacements, kInfinity, all, visible);
+    const ErrorSummary errors = all.summary(false);
+    const auto measured = bound == ErrorBound::max ? errors.max : errors.p999;
+    return {target_px, greedy.in_view, greedy.full_in_view, measured.value_or(0)};
+}
+
+void TruthMeter::find_economy(std::uint64_t triangles) {
+    if (!now_.measured) throw ContractError("TruthMeter::find_economy: no frame was measured");
+    const ErrorSummary errors = frame_screen_.summary(false);
+    if (!errors.max_covered) return;
+    Economy& economy = total_.economy.emplace_back();
+    economy.frame = now_.frame;
+    economy.triangles = triangles;
+    economy.max = find_fewest(*errors.max_covered, ErrorBound::max);
+    if (std::isfinite(*errors.p999)) {
+        economy.p999 = find_fewest(*errors.p999, ErrorBound::p999);
+    }
 }
 
 void TruthMeter::measure_realtime(int frame, const Camera& camera, CapturedSurface&& surface,

@@ -2,6 +2,7 @@
 // The truth about a cell: what the frames of its lockstep replay really showed, frame by frame and
 // pooled over the flight. See the README's table of fields for what each figure means.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "measure/capture.h"
 #include "measure/error_pool.h"
+#include "measure/greedy_triangulation.h"
 #include "measure/image_difference.h"
 #include "measure/pixel_errors.h"
 #include "measure/reference_terrain.h"
@@ -46,15 +48,21 @@ struct WorstPlace {
     int frame = 0, row = 0, column = 0;
 };
 
-/// A frame's triangles beside those that would have done; see greedy_triangulation.h.
+/// The fewest triangles that are known to do for a frame at one error; see greedy_triangulation.h.
+struct Fewest {
+    double target_px = 0;      ///< what the method's own surface measured
+    std::uint64_t greedy = 0;  ///< triangles that reach into the frustum
+    std::uint64_t full = 0;    ///< of the full grid, likewise
+    double greedy_px = 0;      ///< the error of the greedy ones, measured like a method's
+    [[nodiscard]] std::uint64_t minimal() const { return std::min(greedy, full); }
+};
+
+/// A frame's triangles beside those that would have done at the same measured screen error.
 struct Economy {
     int frame = 0;
-    double target_px = 0;         ///< the frame's greatest screen error, uncovered samples apart
     std::uint64_t triangles = 0;  ///< that the method drew, with an area
-    std::uint64_t minimal = 0;    ///< of greedy and full the fewer
-    std::uint64_t greedy = 0;     ///< that reach into the frustum
-    std::uint64_t full = 0;       ///< of the full grid that reach into the frustum
-    double greedy_px = 0;  ///< screen error of the greedy triangulation, measured like a method's
+    Fewest max;                   ///< at its greatest error, uncovered samples apart
+    std::optional<Fewest> p999;   ///< at its P99.9; nothing where uncovered samples reach into it
 };
 
 /// Over all measured frames. Counts are totals unless they say otherwise.
@@ -114,6 +122,7 @@ public:
     [[nodiscard]] const ReferenceTerrain& terrain() const { return terrain_; }
 
 private:
+    [[nodiscard]] Fewest find_fewest(double target_px, ErrorBound bound) const;
     struct Taken {
         int frame = -1;
         Camera camera;

@@ -55,6 +55,18 @@ Json::Value errors(const measure::ErrorSummary& summary,
     return json;
 }
 
+Json::Value fewest(const std::optional<measure::Fewest>& fewest, std::uint64_t triangles) {
+    if (!fewest) return Json::Value::null;
+    Json::Value json;
+    json["target_px"] = number(fewest->target_px);
+    json["minimal_triangles"] = count(fewest->minimal());
+    json["greedy_triangles"] = count(fewest->greedy);
+    json["greedy_px"] = number_or_inf(fewest->greedy_px);
+    json["ratio"] = fewest->minimal() > 0 ? number(double(triangles) / double(fewest->minimal()))
+                                          : Json::Value::null;
+    return json;
+}
+
 Json::Value total_and_max(std::uint64_t total, std::uint64_t max) {
     Json::Value json;
     json["total"] = count(total);
@@ -86,15 +98,10 @@ Json::Value truth_record(const measure::TruthSummary& truth) {
     for (const measure::Economy& frame : truth.economy) {
         Json::Value figures;
         figures["frame"] = frame.frame;
-        figures["target_px"] = number(frame.target_px);
         figures["triangles"] = count(frame.triangles);
-        figures["minimal_triangles"] = count(frame.minimal);
-        figures["greedy_triangles"] = count(frame.greedy);
-        figures["full_triangles"] = count(frame.full);
-        figures["greedy_px"] = number_or_inf(frame.greedy_px);
-        figures["ratio"] = frame.minimal > 0
-                               ? number(double(frame.triangles) / double(frame.minimal))
-                               : Json::Value::null;
+        figures["full_triangles"] = count(frame.max.full);
+        figures["p999"] = fewest(frame.p999, frame.triangles);
+        figures["max"] = fewest(frame.max, frame.triangles);
         json["economy"].append(figures);
     }
     Json::Value& silhouette = json["silhouette_px"];

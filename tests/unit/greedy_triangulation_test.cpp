@@ -39,17 +39,20 @@ Camera camera_over(const TerrainInfo& info, double heading, double pitch, double
 }
 
 /// As the harness measures any method.
-double measured(const GreedyTriangulation& greedy, const ReferenceTerrain& terrain,
-                const Camera& camera) {
+ErrorSummary measured(const GreedyTriangulation& greedy, const ReferenceTerrain& terrain,
+                      const Camera& camera) {
     std::vector<float> displacements(terrain.heights().size());
     DrawnSurface(surface_of(greedy, terrain, camera), terrain.info())
         .displacements(terrain.heights(), displacements);
     ErrorPool all, visible;
-    return measure_samples(terrain, camera, displacements, 1, all, visible).worst.px;
+    (void)measure_samples(terrain, camera, displacements, 1, all, visible);
+    return all.summary(false);
 }
 
-TEST(GreedyTriangulation,
-     keeps_its_target_as_measured_like_a_method_and_needs_no_more_than_the_full_grid) {
+// Vertices are rounded to float, relative to the eye; a percentile is within 0.0015 %.
+constexpr double kRounding = 2e-3;
+
+TEST(GreedyTriangulation, keeps_its_target_as_measured_like_a_method) {
     for (const auto& [name, rows, columns] : {std::tuple{"ridged", 129, 129},
                                               {"ridged", 65, 200},
                                               {"step", 90, 70},
@@ -61,14 +64,33 @@ TEST(GreedyTriangulation,
             std::size_t fewest = 0;
             for (const double target : {0.0, 0.1, 1.0, 8.0}) {
                 const GreedyTriangulation greedy = greedy_triangulation(terrain, camera, target);
-                // Vertices are rounded to float, relative to the eye.
-                EXPECT_LE(measured(greedy, terrain, camera), target + 2e-3);
+                const ErrorSummary errors = measured(greedy, terrain, camera);
                 EXPECT_LE(greedy.max_px, target);
-                EXPECT_NEAR(greedy.max_px, measured(greedy, terrain, camera), 2e-3);
-                EXPECT_LE(greedy.minimal(), greedy.full_in_view);
+                EXPECT_NEAR(greedy.max_px, *errors.max, kRounding);
+                EXPECT_NEAR(greedy.p999_px, *errors.p999, kRounding);
                 EXPECT_TRUE(target == 0 || greedy.triangles.size() <= fewest);
                 fewest = greedy.triangles.size();
             }
+        }
+    }
+}
+
+TEST(GreedyTriangulation, needs_no_more_for_the_percentile_than_for_the_maximum) {
+    const auto field = form("ridged", 257, 257);
+    const ReferenceTerrain terrain(field->samples(), field->info());
+    for (const double pitch : {-90.0, -30.0, -3.0}) {
+        const Camera camera = camera_over(field->info(), 40, pitch, 150);
+        for (const double target : {0.3, 1.0, 4.0}) {
+            const auto all = greedy_triangulation(terrain, camera, target);
+            const auto most = greedy_triangulation(terrain, camera, target, ErrorBound::p999);
+            const ErrorSummary errors = measured(most, terrain, camera);
+            EXPECT_LE(*errors.p999, target + kRounding);
+            EXPECT_GT(*errors.max, target);
+            EXPECT_LT(most.triangles.size(), all.triangles.size());
+            EXPECT_NEAR(most.p999_px, *errors.p999, kRounding);
+            EXPECT_NEAR(most.max_px, *errors.max, kRounding);
+            // It stops where the target is met: not far below it.
+            EXPECT_GT(most.p999_px, 0.9 * target);
         }
     }
 }
@@ -81,7 +103,7 @@ TEST(GreedyTriangulation, of_a_plane_is_two_triangles) {
         const auto greedy =
             greedy_triangulation(terrain, camera_over(field->info(), 0, -60, 100), 1e-3);
         EXPECT_EQ(greedy.triangles.size(), 2U);
-        EXPECT_EQ(greedy.minimal(), 2U);
+        EXPECT_EQ(greedy.in_view, 2U);
     }
 }
 
