@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lodbench::base {
 
@@ -18,5 +19,8 @@ namespace lodbench::base {
 /// was not built, or not installed. Throws EnvironmentError, with the loader's words, where it is
 /// there but does not load.
 [[nodiscard]] void* find_in_module(const std::string& name, const char* symbol);
+
+/// Names of the modules that this process has loaded, in alphabetical order.
+[[nodiscard]] std::vector<std::string> loaded_modules();
 
 }  // namespace lodbench::base

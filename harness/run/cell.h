@@ -64,6 +64,8 @@ struct CellResult {
     /// What the method asked of the terrain, and what was read from disk for it, when the timing
     /// replay ended.
     std::uint64_t samples_served = 0, tiles_served = 0, terrain_bytes_read = 0;
+    std::uint64_t samples_prepared = 0;  ///< of the samples served, those while it prepared
+    std::vector<std::string> modules;    ///< of lodbench, that the cell's process loaded
     Counters counters;       ///< of the lockstep replay: means over its frames, of `..._so_far` the last
     std::string depth_hash;  ///< at the randomly chosen frame, lockstep
     std::string terrain_name, terrain_checksum;

@@ -199,6 +199,7 @@ std::string write_result(const CellResult& result) {
     json["gpu_bytes"] = count(result.gpu_bytes);
     json["peak_rss_bytes"] = count(result.peak_rss_bytes);
     json["samples_served"] = Json::UInt64(result.samples_served);
+    json["samples_prepared"] = Json::UInt64(result.samples_prepared);
     json["tiles_served"] = Json::UInt64(result.tiles_served);
     json["terrain_bytes_read"] = Json::UInt64(result.terrain_bytes_read);
     json["counters"] = Json::arrayValue;
@@ -214,6 +215,7 @@ std::string write_result(const CellResult& result) {
     json["plugin_checksum"] = result.plugin_checksum;
     json["claimed_px"] = number(result.claimed_px);
     json["truth"] = result.truth;
+    json["modules"] = texts(result.modules);
     json["warnings"] = texts(result.warnings);
     json["gl_vendor"] = result.gl_vendor;
     json["gl_renderer"] = result.gl_renderer;
@@ -248,6 +250,7 @@ CellResult read_result(std::string_view text, const std::string& where) {
         result.gpu_bytes = read_count(json["gpu_bytes"]);
         result.peak_rss_bytes = read_count(json["peak_rss_bytes"]);
         result.samples_served = json["samples_served"].asUInt64();
+        result.samples_prepared = json["samples_prepared"].asUInt64();
         result.tiles_served = json["tiles_served"].asUInt64();
         result.terrain_bytes_read = json["terrain_bytes_read"].asUInt64();
         for (const Json::Value& pair : report::get_array(json, "counters", where)) {
@@ -263,6 +266,9 @@ CellResult read_result(std::string_view text, const std::string& where) {
         result.truth = json["truth"];
         if (!result.truth.isNull() && !result.truth.isObject()) {
             throw InputError(where + ": 'truth' is neither null nor an object");
+        }
+        for (const Json::Value& module : report::get_array(json, "modules", where)) {
+            result.modules.push_back(module.asString());
         }
         for (const Json::Value& warning : report::get_array(json, "warnings", where)) {
             result.warnings.push_back(warning.asString());
@@ -324,6 +330,7 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
         return measured ? Json::Value(Json::UInt64(value)) : Json::Value::null;
     };
     json["samples_served"] = served(result.samples_served);
+    json["samples_prepared"] = served(result.samples_prepared);
     json["tiles_served"] = served(result.tiles_served);
     json["terrain_bytes_read"] = served(result.terrain_bytes_read);
     json["gpu_bytes"] = count(result.gpu_bytes);
@@ -338,6 +345,7 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["timer_verdict"] = text_or_null(result.timer_verdict);
     json["warmup_frames"] = result.warmup_frames;
     json["frames_in_flight"] = result.frames_in_flight;
+    json["modules"] = texts(result.modules);
     json["warnings"] = texts(result.warnings);
     return json;
 }

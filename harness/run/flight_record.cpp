@@ -3,9 +3,11 @@
 #include <json/value.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
+#include "measure/needed_tiles.h"
 #include "report/json.h"
 #include "report/png.h"
 #include "report/results.h"
@@ -17,6 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kLargestMap = 512;  // pixels
+// Screen errors for which the needed tiles are told.
+constexpr std::array kTargetsPx = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
 // Of the map's tone: what a plain has, and what the steepest slope takes from or adds to it.
 constexpr double kPlainTone = 168;
 constexpr double kToneRange = 120;
@@ -129,8 +133,8 @@ report::Image hillshade(const Terrain& terrain, int largest) {
     return image;
 }
 
-void record_flight(const fs::path& out, const std::string& name, const Terrain& terrain,
-                   const scenario::FlightPath& path, int frames) {
+void record_flight(const fs::path& out, const std::string& name, const Terrain& terrain, int frames,
+                   const std::function<Camera(int)>& camera_at) {
     const fs::path file = out / "flights" / (name + ".json");
     std::error_code ignored;
     if (fs::exists(file, ignored)) return;
@@ -152,11 +156,21 @@ void record_flight(const fs::path& out, const std::string& name, const Terrain& 
     json["max_height"] = double(info.max_height);
     json["positions"] = Json::arrayValue;
     json["directions"] = Json::arrayValue;
+    measure::NeededTiles needed(terrain, {kTargetsPx.begin(), kTargetsPx.end()});
     for (int frame = 0; frame < frames; ++frame) {
-        Camera camera;
-        path.place(frame, camera);
+        const Camera camera = camera_at(frame);
         json["positions"].append(vector_json(camera.position));
         json["directions"].append(vector_json(camera.forward()));
+        needed.add(camera);
+    }
+    json["needed"] = Json::arrayValue;
+    for (const measure::TileNeed& need : needed.needs()) {
+        Json::Value entry;
+        entry["target_px"] = need.target_px;
+        entry["tiles"] = Json::UInt64(need.tiles);
+        entry["samples"] = Json::UInt64(need.samples());
+        entry["most_tiles_in_a_frame"] = Json::UInt64(need.most_in_a_frame);
+        json["needed"].append(entry);
     }
     report::write_whole(file, report::to_text(json) + "\n");
 }

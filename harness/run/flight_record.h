@@ -1,13 +1,14 @@
 #pragma once
-// Where a flight's cameras stood and over which ground, once for each scenario of a campaign: for
-// the map in its report.
+// Where a flight's cameras stood, over which ground, and how much of it their views need: once for
+// each scenario of a campaign, whatever the methods do.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
+#include "api/camera.h"
 #include "api/terrain.h"
 #include "report/canvas.h"
-#include "scenario/flight_path.h"
 
 namespace lodbench::run {
 
@@ -16,8 +17,8 @@ namespace lodbench::run {
 [[nodiscard]] report::Image hillshade(const Terrain& terrain, int largest);
 
 /// Writes flights/<name>.json and flights/<name>__hillshade.png into the results folder `out`,
-/// unless they are there.
+/// unless they are there. `camera_at` gives the camera of each of the frames.
 void record_flight(const std::filesystem::path& out, const std::string& name,
-                   const Terrain& terrain, const scenario::FlightPath& path, int frames);
+                   const Terrain& terrain, int frames, const std::function<Camera(int)>& camera_at);
 
 }  // namespace lodbench::run

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "base/hash.h"
+#include "base/modules.h"
 #include "measure/timer_verdict.h"
 #include "report/png.h"
 #include "report/results.h"
@@ -84,7 +85,8 @@ public:
         measurer_->write_picture(shot_path("worst"), spec_.id);
         measurer_.reset();
         stage_->release();
-        record_flight(spec_.out, scenario_.name, *terrain_, *path_, scenario_.frames);
+        record_flight(spec_.out, scenario_.name, *terrain_, scenario_.frames,
+                      [this](int frame) { return camera_at(frame); });
     }
 
     [[nodiscard]] std::string where() const {
@@ -174,6 +176,11 @@ void Flight::open() {
     if (const std::string& bound = stage_->method().claimed_bound; !bound.empty()) {
         result_.claimed_px = stage_->params().real(bound);
     }
+    if (scenario_.terrain.out_of_core && (stage_->method().capabilities & kOutOfCore) == 0) {
+        throw MethodSkipped(fmt::format(
+            "method '{}' holds the whole terrain in memory, and the scenario is out of core",
+            stage_->method().id));
+    }
     verdict_ = measure::test_timer(stage_->device());
     result_.timer_verdict = verdict_.text;
 }
@@ -191,6 +198,7 @@ void Flight::prepare() {
     const double cpu = process_cpu_seconds();
     stage_->prepare();
     glFinish();
+    result_.samples_prepared = stage_->served().samples_served();
     result_.prepare_s = wall.seconds();
     result_.prepare_cpu_s = process_cpu_seconds() - cpu;
     const Stopwatch upload;
@@ -391,6 +399,7 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
         flight = std::make_unique<Flight>(spec, signs, result);
         flight->fly();
         result.status = CellStatus::ok;
+        result.modules = base::loaded_modules();
     } catch (const MethodSkipped& skipped) {
         result.status = CellStatus::skipped;
         result.reason = skipped.what();

@@ -94,6 +94,7 @@ void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& s
         source.where = section->where("file");
         source.no_data = section->number("no_data", {-1e300, 1e300});
         source.cold = section->boolean("cold").value_or(false);
+        source.out_of_core = section->boolean("out_of_core").value_or(false);
     } else {
         source.synthetic = *synthetic;
         source.where = section->where("synthetic");
@@ -308,6 +309,12 @@ void apply(const Overrides& overrides, Scenario& scenario) {
     if (overrides.repetitions) {
         require("--repeat", *overrides.repetitions, kMaxRepetitions);
         scenario.repetitions = *overrides.repetitions;
+    }
+    if (scenario.terrain.out_of_core && scenario.measure.truth) {
+        throw InputError(fmt::format(
+            "{}: out_of_core is set, but measuring the truth needs the whole terrain in memory; "
+            "write truth = false under [measure], or fly with --no-truth",
+            scenario.terrain.where));
     }
 }
 

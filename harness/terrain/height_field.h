@@ -59,6 +59,8 @@ struct TerrainSource {
     std::optional<double> origin_x, origin_y;    ///< metres, of the south-west sample
     std::optional<double> no_data;               ///< in units of the file
     bool cold = false;  ///< a store's tiles come from the disk, not from what the system holds
+    /// A store only: nothing holds the whole of it in memory.
+    bool out_of_core = false;
     std::string where;  ///< "scenario.toml:12", put in front of messages; may be empty
 };
 

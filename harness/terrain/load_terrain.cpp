@@ -8,7 +8,7 @@
 #include "api/error.h"
 #include "terrain/memory.h"
 #include "terrain/open_terrain.h"
-#include "terrain/raster_rows.h"
+#include "terrain/raster.h"
 #include "terrain/synthetic.h"
 #include "terrain/tile_store.h"
 #include "terrain/void_fill.h"
@@ -17,22 +17,13 @@ namespace lodbench::terrain {
 namespace {
 
 LoadedTerrain load_raster(const TerrainSource& source) {
-    RasterRows rows(source);
-    TerrainInfo info = rows.info();
-    check_field_size(source.file.string(), info.rows, info.columns);
-    const auto columns = std::size_t(info.columns);
-    // Memory is touched as rows come: a small file that claims to be huge ends before it costs any.
-    std::vector<float> heights;
-    heights.reserve(std::size_t(info.rows) * columns);
-    for (int row = 0; row < info.rows; ++row) {
-        heights.resize(heights.size() + columns);
-        rows.next(std::span(heights).last(columns));
-    }
-    const std::uint64_t voids = fill_voids(heights, info.rows, info.columns, info.spacing);
-    if (voids == heights.size()) throw InputError(rows.all_void());
+    Raster raster = read_raster(source);
+    TerrainInfo& info = raster.info;
+    const std::uint64_t voids = fill_voids(raster.heights, info.rows, info.columns, info.spacing);
+    if (voids == raster.heights.size()) throw InputError(raster.all_void);
     info.void_count += voids;
-    return {std::make_unique<HeightField>(info, std::move(heights)), rows.kind(),
-            rows.spacing_assumed()};
+    return {std::make_unique<HeightField>(info, std::move(raster.heights)), raster.kind,
+            raster.spacing_assumed};
 }
 
 LoadedTerrain load_store(const TerrainSource& source) {

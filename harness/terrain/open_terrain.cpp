@@ -60,11 +60,13 @@ void check_source(const TerrainSource& source) {
     check_overrides(source);
     const bool stored = !source.file.empty() && is_store(source.file);
     if (stored) check_store(source);
-    if (source.cold && !stored) {
+    for (const auto& [name, set] :
+         {std::pair{"cold", source.cold}, {"out_of_core", source.out_of_core}}) {
+        if (!set || stored) continue;
         throw InputError(fmt::format(
-            "{}: cold is set, but only a tiled store (.tiles) stays on disk; leave it out, or make "
+            "{}: {} is set, but only a tiled store (.tiles) stays on disk; leave it out, or make "
             "it one with `lodbench terrain import`",
-            source.file.empty() ? source.synthetic : source.file.string()));
+            source.file.empty() ? source.synthetic : source.file.string(), name));
     }
 }
 

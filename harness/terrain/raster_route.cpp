@@ -124,6 +124,16 @@ RasterRoute raster_route(const std::filesystem::path& file) {
                     file.string(), extension));
 }
 
+const char* module_of(RasterRoute route) {
+    switch (route) {
+        case RasterRoute::gdal: return "gdal";
+        case RasterRoute::oiio: return "oiio";
+        case RasterRoute::raw:
+        case RasterRoute::pgm: break;
+    }
+    return nullptr;
+}
+
 std::unique_ptr<RasterReader> open_raster(const std::filesystem::path& file,
                                           const Sidecar& sidecar) {
     switch (raster_route(file)) {

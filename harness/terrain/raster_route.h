@@ -18,4 +18,7 @@ enum class RasterRoute { gdal, oiio, raw, pgm };
 /// Throws InputError for any other extension (listing the known ones) and for a missing file.
 [[nodiscard]] RasterRoute raster_route(const std::filesystem::path& file);
 
+/// Name of the module that reads such files; nullptr where none is needed.
+[[nodiscard]] const char* module_of(RasterRoute route);
+
 }  // namespace lodbench::terrain

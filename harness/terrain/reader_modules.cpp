@@ -10,6 +10,7 @@
 #include "api/error.h"
 #include "base/modules.h"
 #include "terrain/raster_reader.h"
+#include "terrain/raster_route.h"
 #include "terrain/raster_writer.h"
 
 namespace lodbench::terrain {
@@ -50,14 +51,14 @@ fs::path pending_of(fs::path file) {
 
 std::unique_ptr<RasterReader> open_with_gdal(const fs::path& file) {
     const auto open =
-        load_function<OpenRaster>(file, "gdal", "lodbench_open_raster",
+        load_function<OpenRaster>(file, module_of(RasterRoute::gdal), "lodbench_open_raster",
                                   "elevation models are read through GDAL", "LODBENCH_WITH_GDAL");
     return std::unique_ptr<RasterReader>(open(file));
 }
 
 std::unique_ptr<RasterReader> open_with_oiio(const fs::path& file) {
     const auto open =
-        load_function<OpenRaster>(file, "oiio", "lodbench_open_raster",
+        load_function<OpenRaster>(file, module_of(RasterRoute::oiio), "lodbench_open_raster",
                                   "images are read through OpenImageIO", "LODBENCH_WITH_OIIO");
     return std::unique_ptr<RasterReader>(open(file));
 }
@@ -90,7 +91,7 @@ void require_exr_output(const fs::path& file) {
 void write_exr(const FloatRaster& raster, const fs::path& file) {
     require_exr_output(file);
     const auto write =
-        load_function<WriteExr>(file, "oiio", "lodbench_write_exr",
+        load_function<WriteExr>(file, module_of(RasterRoute::oiio), "lodbench_write_exr",
                                 "EXR is written through OpenImageIO", "LODBENCH_WITH_OIIO");
     const fs::path pending = pending_of(file);
     std::error_code error;

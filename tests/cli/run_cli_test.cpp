@@ -308,6 +308,29 @@ TEST_F(Run, one_seed_gives_the_same_order_counts_and_pictures_twice) {
     EXPECT_THAT(order, testing::UnorderedElementsAreArray(other));
 }
 
+TEST_F(Run, a_cell_loads_no_module_that_its_scenario_does_not_need) {
+    const fs::path file = folder_.path() / "image.toml";
+    std::ofstream(file) << "[terrain]\nfile = \"" LODBENCH_SOURCE_DIR
+                           "/scenarios/terrain/puget_sound_1025_160m.png\"\n"
+                           "[viewport]\nwidth = 48\nheight = 36\n[flight]\nkind = \"line\"\n"
+                           "relative = true\nstart = [0.5, 0.5, 9000]\nend = [0.6, 0.5, 9000]\n"
+                           "pitch = -90\nframes = 2\n[run]\nrepetitions = 1\n";
+    const auto modules = [&](Arguments more, const std::string& name) {
+        more.insert(more.end(), {"--method", "template"});
+        EXPECT_EQ(run(file, more, out(name)).status, 0);
+        return cells_of(out(name)).at(0)["modules"];
+    };
+    const Json::Value none = Json::arrayValue;
+    EXPECT_EQ(modules({"--no-truth"}, "bare"), none);
+#ifdef LODBENCH_WITH_WEBP
+    Json::Value webp = none;
+    webp.append("webp");
+    EXPECT_EQ(modules({}, "measured"), webp);
+#else
+    EXPECT_EQ(modules({}, "measured"), none);
+#endif
+}
+
 TEST_F(Run, run_json_holds_the_whole_context) {
     const fs::path file = scenario();
     ASSERT_EQ(run(file, {"--method", "lindstrom"}, out()).status, 0);

@@ -339,6 +339,35 @@ TEST_F(StoreCommand, overrides_of_a_scenario_are_refused_with_its_line) {
                 HasSubstr("cold is set, but only a tiled store (.tiles) stays on disk"));
 }
 
+TEST_F(StoreCommand, flown_out_of_core_skips_the_methods_that_hold_it_whole) {
+    synth("a.tiles");
+    const auto fly = [&](const char* more, const std::vector<std::string>& options) {
+        std::vector<std::string> arguments = {"run",      scenario("a.tiles", more).string(),
+                                              "--out",    (folder_.path() / "out").string(),
+                                              "--method", "dltq",
+                                              "--method", "template"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return run_lodbench(arguments, folder_.path());
+    };
+    const Finished measured = fly("out_of_core = true\n", {});
+    EXPECT_EQ(measured.status, 2);
+    EXPECT_THAT(measured.output, HasSubstr("s.toml:2: out_of_core is set, but measuring the truth "
+                                           "needs the whole terrain in memory; write truth = false "
+                                           "under [measure], or fly with --no-truth"));
+    const Finished flown = fly("out_of_core = true\n", {"--no-truth"});
+    EXPECT_EQ(flown.status, 0) << flown.output;
+    std::map<std::string, Json::Value> cells;
+    for (const Json::Value& cell : cells_of(folder_.path() / "out")) {
+        cells[cell["method"].asString()] = cell;
+    }
+    ASSERT_EQ(cells.size(), 2U);
+    EXPECT_EQ(cells["dltq"]["status"].asString(), "ok");
+    EXPECT_EQ(cells["template"]["status"].asString(), "skipped");
+    EXPECT_EQ(cells["template"]["reason"].asString(),
+              "method 'template' holds the whole terrain in memory, and the scenario is out of "
+              "core");
+}
+
 TEST_F(StoreCommand, of_any_size_is_built_and_checked_within_bounded_memory) {
     if (kAddressSanitizer || kThreadSanitizer) GTEST_SKIP() << "its shadow memory is counted too";
     synth("a.tiles");

@@ -9,6 +9,7 @@
 #include "report/json.h"
 #include "report/png.h"
 #include "run/flight_record.h"
+#include "scenario/flight_path.h"
 #include "terrain/height_field.h"
 
 namespace lodbench::run {
@@ -60,7 +61,12 @@ TEST(FlightRecord, holds_the_place_and_the_view_of_each_frame_and_is_written_onc
     scenario::PathSpec spec;
     spec.keyframes = {{{1000, 2000, 50}, 90.0}, {{1100, 2000, 50}, 90.0}};
     const auto path = scenario::make_path(spec, 5, 60, terrain);
-    record_flight(folder.path(), "some", terrain, *path, 5);
+    const auto camera_at = [&](int frame) {
+        Camera camera;
+        path->place(frame, camera);
+        return camera;
+    };
+    record_flight(folder.path(), "some", terrain, 5, camera_at);
     const fs::path file = folder.path() / "flights" / "some.json";
     const Json::Value json = report::parse_json(test::text_of(file), "some.json");
     EXPECT_EQ(json["south_west"][1], 2000.0);
@@ -72,7 +78,13 @@ TEST(FlightRecord, holds_the_place_and_the_view_of_each_frame_and_is_written_onc
     const std::string picture = test::text_of(folder.path() / "flights" / "some__hillshade.png");
     EXPECT_TRUE(
         report::read_png({reinterpret_cast<const std::uint8_t*>(picture.data()), picture.size()}));
-    record_flight(folder.path(), "some", terrain, *path, 3);
+    // One tile, which each view needs.
+    ASSERT_EQ(json["needed"].size(), 7U);
+    EXPECT_EQ(json["needed"][2]["target_px"], 1.0);
+    EXPECT_EQ(json["needed"][2]["tiles"].asUInt64(), 1U);
+    EXPECT_EQ(json["needed"][2]["samples"].asUInt64(), 65U * 65);
+    EXPECT_EQ(json["needed"][2]["most_tiles_in_a_frame"].asUInt64(), 1U);
+    record_flight(folder.path(), "some", terrain, 3, camera_at);
     EXPECT_EQ(report::parse_json(test::text_of(file), "some.json"), json);
 }
 

@@ -9,6 +9,7 @@
 
 #include "api/error.h"
 #include "terrain/height_field.h"
+#include "terrain/raster_reader.h"
 #include "unit/raster_files.h"
 
 namespace lodbench::terrain {
@@ -71,6 +72,11 @@ std::string with_checksums(std::string file) {
 
 class Mutants : public testing::Test {
 protected:
+    void SetUp() override {
+        // Loads the modules: what follows is read in this process, many times and in the open.
+        EXPECT_THROW((void)open_with_oiio("none.png"), InputError);
+        EXPECT_THROW((void)open_with_gdal("none.asc"), InputError);
+    }
     /// Mutates `bytes`, or the sidecar where there is one, `count` times; at least one mutant is
     /// refused.
     void expect_read_or_refused(const std::string& name, const std::string& bytes,
