@@ -111,6 +111,38 @@ TEST(NeededTiles, keep_the_target_as_the_harness_measures_it_and_cover_the_view)
     }
 }
 
+TEST(NeededTiles, keep_it_where_what_the_levels_lack_adds_up) {
+    // Tents of 8, 4 and 2 samples, half a metre high: so much does each of the coarser levels lack
+    // of the next, and all of them together 1.125 m at samples 3 and 5 of 8.
+    TerrainInfo info;
+    info.name = "tents";
+    info.rows = info.columns = 513;
+    info.spacing = {10, 10};
+    std::vector<float> heights;
+    for (int i = 0; i < 513 * 513; ++i) {
+        double height = 0;
+        for (const int period : {8, 4, 2}) {
+            const int at = i % 513 % period;
+            height += double(std::min(at, period - at)) / period;
+        }
+        heights.push_back(float(height));
+    }
+    const terrain::HeightField field(info, heights);
+    const NeededTiles needed(field, {});
+    // From afar, so that a metre is as large everywhere.
+    Camera camera = camera_over(field.info(), 0, -15, 0);
+    camera.position -= 30000.0 * camera.forward();
+    camera.vertical_fov = 0.2;
+    const double metre_px = camera.lambda() / 30000;
+    for (const double metres : {0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0}) {
+        EXPECT_LE(measured(needed, field, camera, metres * metre_px), metres * metre_px) << metres;
+    }
+    // 1.5 m are told of the root, and no more.
+    std::uint64_t tiles = 0;
+    needed.visit_needed(camera, 1.7 * metre_px, [&](const TileId&) { ++tiles; });
+    EXPECT_EQ(tiles, 1U);
+}
+
 TEST(NeededTiles, are_coarse_where_that_will_do) {
     const auto field = ridged(1025, 1025);
     NeededTiles needed(*field, {1e-6, 4.0, 16.0, 64.0, 1e6});
