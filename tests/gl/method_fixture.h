@@ -62,7 +62,7 @@ inline Camera camera_at(const glm::dvec3& position, double heading, double pitch
 /// The whole life of a method: created, prepared and uploaded here, released at the end.
 class Flight {
 public:
-    Flight(std::shared_ptr<const terrain::HeightField> terrain, const std::string& plugin,
+    Flight(const std::shared_ptr<const Terrain>& terrain, const std::string& plugin,
            const std::string& method,
            const std::vector<std::pair<std::string, std::string>>& settings = {})
         : stage_(
