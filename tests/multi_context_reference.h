@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <vector>
 
@@ -14,6 +15,17 @@
 #include "multi_context/layout.h"
 
 namespace lodbench::test {
+
+/// The smallest code that stands for at least `error` pixels >= 0: what error_code.glsl should
+/// store.
+inline std::uint8_t encode_error(float error, float delta) {
+    const float steps = std::ceil(error / delta * float(multi_context::kCodesPerDelta));
+    if (!(steps < float(multi_context::kUnboundedCode))) return multi_context::kUnboundedCode;
+    int code = int(steps);
+    // The quotient is rounded: it may end a step too low.
+    if (multi_context::decode_error(std::uint8_t(code), delta) < error) ++code;
+    return std::uint8_t(code);
+}
 
 /// Heights in double, the border repeated beyond the grid.
 class PaddedHeights {

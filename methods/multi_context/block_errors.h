@@ -2,7 +2,6 @@
 // What the blocks activity knows of the errors: per block in the form of the read-back.
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,19 +20,9 @@ inline constexpr float kUnbounded = 1e30F;
 inline constexpr int kCodesPerDelta = 128;
 inline constexpr int kUnboundedCode = 255;
 
-/// Pixels. In float as the shader computes it.
+/// Pixels. In float as error_code.glsl computes it, which also makes the codes.
 inline float decode_error(std::uint8_t code, float delta) {
     return code == kUnboundedCode ? kUnbounded : float(code) * (delta / float(kCodesPerDelta));
-}
-
-/// The smallest code that stands for at least `error` pixels >= 0.
-inline std::uint8_t encode_error(float error, float delta) {
-    const float steps = std::ceil(error / delta * float(kCodesPerDelta));
-    if (!(steps < float(kUnboundedCode))) return kUnboundedCode;
-    int code = int(steps);
-    // The quotient is rounded: it may end a step too low.
-    if (decode_error(std::uint8_t(code), delta) < error) ++code;
-    return std::uint8_t(code);
 }
 
 /// TBE of section 3.3 for every block of LOD 1 and coarser, in pixels, for one camera. Either the

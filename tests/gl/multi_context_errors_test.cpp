@@ -221,7 +221,7 @@ TEST(MultiContextErrors, of_blocks_are_the_same_from_the_gpus_maxima_and_from_th
     }
 }
 
-TEST(MultiContextErrors, in_bytes_are_never_below_those_in_floats) {
+TEST(MultiContextErrors, in_bytes_are_the_codes_of_those_in_floats) {
     const auto terrain = hills(129, 129);
     std::mt19937 random(6);
     for (const float delta : {0.37F, 1.0F, 20.0F}) {
@@ -236,12 +236,12 @@ TEST(MultiContextErrors, in_bytes_are_never_below_those_in_floats) {
             const auto exact = floats.texture();
             const auto coded = bytes.texture();
             for (std::size_t texel = 0; texel < exact.size(); ++texel) {
-                ASSERT_GE(coded[texel], exact[texel]);
-                if (exact[texel] < 1.9F * delta) {
-                    // GLSL's division may be off by 2.5 steps, so that one code more is possible.
-                    ASSERT_LE(coded[texel] - exact[texel], delta / 128 * 1.01F);
-                    between += exact[texel] > 0;
-                }
+                const int code = encode_error(exact[texel], delta);
+                // GLSL's division may be off by 2.5 steps, so that one code more is possible.
+                const int most = std::min(code + 1, multi_context::kUnboundedCode);
+                ASSERT_GE(coded[texel], multi_context::decode_error(std::uint8_t(code), delta));
+                ASSERT_LE(coded[texel], multi_context::decode_error(std::uint8_t(most), delta));
+                between += code > 0 && code < multi_context::kUnboundedCode;
             }
         }
         EXPECT_GT(between, 100U) << delta;

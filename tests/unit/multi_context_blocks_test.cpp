@@ -155,7 +155,7 @@ TEST(MultiContextBlocks, byte_codes_never_stand_for_less_and_split_no_block_that
     for (const float delta : {0.01F, 0.3F, 1.0F, 1.7F, 5.0F, 1000.0F}) {
         std::uniform_real_distribution<float> within(0, 3 * delta);
         const auto check = [&](float error) {
-            const std::uint8_t code = multi_context::encode_error(error, delta);
+            const std::uint8_t code = encode_error(error, delta);
             const float decoded = multi_context::decode_error(code, delta);
             ASSERT_GE(decoded, error);
             if (code != multi_context::kUnboundedCode) {
@@ -173,8 +173,8 @@ TEST(MultiContextBlocks, byte_codes_never_stand_for_less_and_split_no_block_that
             check(std::nextafter(exact, 2 * delta));
             if (code > 0) check(std::nextafter(exact, 0.0F));
         }
-        EXPECT_EQ(multi_context::encode_error(0, delta), 0);
-        EXPECT_EQ(multi_context::encode_error(multi_context::kUnbounded, delta), 255);
+        EXPECT_EQ(encode_error(0, delta), 0);
+        EXPECT_EQ(encode_error(multi_context::kUnbounded, delta), 255);
     }
 }
 
