@@ -501,6 +501,29 @@ TEST_F(FaultTable, skirts_below_the_surface_change_nothing) {
     EXPECT_LE(*outside.pixel.max, kSlackPx);
 }
 
+TEST_F(FaultTable, a_fence_above_the_surface_shows_in_the_pixels_and_in_no_sample) {
+    const auto terrain = terrain_of(kFlat);
+    constexpr int kColumn = 20;
+    constexpr double kTall = 30;
+    Mesh mesh = grid(kFlat);
+    mesh.quad(point(24, kColumn, 0), point(40, kColumn, 0), point(40, kColumn, kTall),
+              point(24, kColumn, kTall));
+    for (const Camera& camera : {from_west(100, 20), from_west(100, 200, 60, -30)}) {
+        const TruthSummary found = truth(*terrain, mesh, camera);
+        EXPECT_EQ(found.walls, 2U);
+        // Its top, drawn where the truth is flat ground.
+        const double tall = glm::distance(*camera.project(point(kMiddle, kColumn, kTall)),
+                                          *camera.project(point(kMiddle, kColumn, 0)));
+        EXPECT_NEAR(*found.pixel.max, tall, 1.001);
+        EXPECT_LE(*found.screen.max, kExact);
+        // From below its top it stands before the sky.
+        const bool before_sky = camera.position.z < kTall;
+        EXPECT_EQ(found.silhouette_pixels > 100, before_sky);
+        expect_all_covered(found);
+        expect_no_cracks(found);
+    }
+}
+
 TEST_F(FaultTable, a_rasteriser_that_drops_triangles_shows_in_the_picture_alone) {
     const auto terrain = terrain_of(kHills);
     const Mesh mesh = grid(kHills);
