@@ -94,8 +94,8 @@ def main():
             live, counters = cell["pixel_error_realtime_px"], cell["counters"]
             worst = screen["worst"]
             print(f"| {speed} | {float(speed) / options.rate:g} "
-                  f"| {counters['staleness_frames_unsettled_mean']:.1f}, "
-                  f"{counters['staleness_frames_unsettled_max']:.0f} "
+                  f"| {counters['staleness_frames_unsettled_mean_so_far']:.1f}, "
+                  f"{counters['staleness_frames_unsettled_max_so_far']:.0f} "
                   f"| {float(screen['max']) / options.delta:.3f} | {float(screen['p999']):.3f} "
                   f"| {100 * screen['over_tau']:.3f} "
                   f"| {worst['frame']}, {worst['row']}, {worst['column']} "

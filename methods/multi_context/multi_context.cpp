@@ -81,10 +81,12 @@ public:
         activity_.emplace(device, heights_, terrain_->info(), errors_settings_);
     }
 
-    void select(const Camera& camera, const Clock&) override {
+    void select(const Camera& camera, const Clock& clock) override {
         Background<Camera, BlockErrors>& background = activity_->background();
         camera_ = camera;
-        if (asked_ > 0 && !settled_) count_unsettled();
+        // A moment that is selected again was a warm-up: no time passed, so none was lost.
+        if (asked_ > 0 && !settled_ && clock.frame != frame_) count_unsettled();
+        frame_ = clock.frame;
         asked_ = background.ask(camera);
         settled_ = !asynchronous_;
         if (taken_ == 0 || !asynchronous_) background.wait_for(asked_);
@@ -121,9 +123,9 @@ public:
         return {{"blocks_drawn", double(selection_.blocks.size())},
                 {"blocks_culled", double(selection_.culled)},
                 {"staleness_frames", double(asked_ - taken_)},
-                {"staleness_frames_unsettled_mean",
+                {"staleness_frames_unsettled_mean_so_far",
                  unsettled_ > 0 ? double(unsettled_sum_) / double(unsettled_) : 0.0},
-                {"staleness_frames_unsettled_max", double(unsettled_most_)},
+                {"staleness_frames_unsettled_max_so_far", double(unsettled_most_)},
                 {"errors_pass_ms", 1e3 * statistics.work_s},
                 {"errors_passes_per_second", statistics.per_second},
                 {"readback_bytes", double(activity_->read_back_bytes())},
@@ -187,6 +189,7 @@ private:
     gl::VertexArray vertices_;
     GLsizei index_count_ = 0;
     Camera camera_;
+    std::int64_t frame_ = 0;  ///< of the last selection
     Selection selection_;
     std::vector<glm::ivec4> instances_of_;  ///< what blocks.vert calls `block`, one a block
     std::uint64_t asked_ = 0;               ///< number of the errors that `camera_` needs

@@ -171,18 +171,41 @@ TEST(MultiContext, draws_with_the_errors_of_an_earlier_camera_until_newer_ones_a
     EXPECT_EQ(flight.counter("staleness_frames"), 0);
     EXPECT_EQ(blocks_of(flight.stage().capture(), info, 17),
               expected_blocks(*terrain, 17, 7.3, camera, camera));
-    // Of 5 selections the last was settled: 0, 1, 2, 3 frames.
-    EXPECT_EQ(flight.counter("staleness_frames_unsettled_max"), 3);
-    EXPECT_EQ(flight.counter("staleness_frames_unsettled_mean"), 1.5);
+}
+
+TEST(MultiContext, counts_how_stale_the_frames_of_the_flight_were_and_no_warm_up) {
+    const auto terrain = hills(257, 257);
+    Flight flight(terrain, "multi_context", "multi-context", with(7.3));
+    const auto select = [&](int frame) {
+        flight.stage().select(lowered(terrain->info(), 0.2 + 0.1 * frame, 30 + 10 * frame, -15),
+                              {frame, frame / 20.0});
+    };
+    select(0);
+    flight.stage().pause_background();
+    for (int warmup = 1; warmup < 4; ++warmup) select(0);
+    EXPECT_EQ(flight.counter("staleness_frames"), 3);
+    EXPECT_EQ(flight.counter("staleness_frames_unsettled_max_so_far"), 0);
+    for (int frame = 0; frame < 4; ++frame) select(frame);  // 4, 5, 6, 7 frames behind
+    select(0);  // what follows warms up for the lockstep replay
+    select(0);
+    EXPECT_EQ(flight.counter("staleness_frames"), 9);
+    flight.stage().resume_background();
+    for (int frame = 0; frame < 4; ++frame) {
+        select(frame);
+        flight.stage().settle();
+        EXPECT_EQ(flight.counter("staleness_frames"), 0);
+        EXPECT_EQ(flight.counter("staleness_frames_unsettled_mean_so_far"), 5.5);
+        EXPECT_EQ(flight.counter("staleness_frames_unsettled_max_so_far"), 7);
+    }
 }
 
 TEST(MultiContext, is_never_behind_where_it_is_not_asynchronous) {
     const auto terrain = large_hills();
     Flight flight(terrain, "multi_context", "multi-context", with(7.3, {{"async", "false"}}));
     for (int i = 0; i < 5; ++i) {
-        flight.select(lowered(terrain->info(), 0.1 * i, 30, -20));
+        flight.stage().select(lowered(terrain->info(), 0.1 * i, 30, -20), {i, i / 20.0});
         EXPECT_EQ(flight.counter("staleness_frames"), 0);
-        EXPECT_EQ(flight.counter("staleness_frames_unsettled_max"), 0);
+        EXPECT_EQ(flight.counter("staleness_frames_unsettled_max_so_far"), 0);
     }
 }
 
