@@ -15,9 +15,31 @@
 
 namespace lodbench::hybrid_patches {
 
+using common::ErrorKind;
 using common::LebRefiner;
 using common::RefinerOptions;
 using test::Mesh;
+
+inline std::vector<RefinerOptions> all_options(double tau) {
+    std::vector<RefinerOptions> all;
+    for (const ErrorKind error : {ErrorKind::midpoint, ErrorKind::accumulated}) {
+        for (const Metric metric : {Metric::euclidean, Metric::planar}) {
+            all.push_back({tau, error, metric, false});
+        }
+    }
+    return all;
+}
+
+inline test::Terrains terrains() {
+    test::Terrains all;
+    all.push_back(test::random_terrain(65, 65, 1));
+    all.push_back(test::random_terrain(100, 37, 2, {10, 3}));
+    all.push_back(test::random_terrain(2, 2, 3));
+    all.push_back(test::random_terrain(9, 5, 4));
+    all.push_back(test::step_terrain(40, 65));
+    all.push_back(test::plane_terrain(33, 33));
+    return all;
+}
 
 /// A terrain with all that hybrid-patches has but the GPU, whose cache is played by an array.
 class Flight {
