@@ -9,7 +9,6 @@
 
 #include "api/error.h"
 #include "report/aligned_table.h"
-#include "report/cell_groups.h"
 #include "report/json.h"
 
 namespace lodbench::report {
@@ -34,7 +33,7 @@ void each_scenario(Rows& rows, const Use& use) {
 
 std::vector<TradePoint> points_of(std::span<const TradeRow> rows) {
     std::vector<TradePoint> points;
-    for (const TradeRow& row : rows) points.push_back(row.point());
+    for (const TradeRow& row : rows) points.push_back(row.point);
     return points;
 }
 
@@ -109,8 +108,45 @@ std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric) {
     return std::nullopt;
 }
 
-TradePoint TradeRow::point() const {
-    return {frame_ms ? frame_ms->centre : kInfinity, error.value_or(kInfinity)};
+std::optional<double> pixel_error(const CellGroup& group, ErrorMetric metric) {
+    std::vector<double> errors;
+    for (const Json::Value* cell : group.good) {
+        if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
+    }
+    return measure::median(errors);
+}
+
+TradePoint trade_point(const CellGroup& group, ErrorMetric metric) {
+    const auto frame_ms = measure::median(numbers_of(group.good, "frame_ms", "mean"));
+    return {frame_ms.value_or(kInfinity), pixel_error(group, metric).value_or(kInfinity)};
+}
+
+std::optional<TradePoint> reference_point(std::span<const TradePoint> points) {
+    constexpr double kWorse = 1.1;
+    TradePoint worst;
+    for (const TradePoint& point : points) {
+        if (!finite(point)) continue;
+        worst.cost = std::max(worst.cost, kWorse * point.cost);
+        worst.error = std::max(worst.error, kWorse * point.error);
+    }
+    if (worst.cost > 0 && worst.error > 0) return worst;
+    return std::nullopt;
+}
+
+std::vector<MethodTrade> method_trades(
+    const std::map<std::string, std::vector<TradePoint>>& methods, const TradePoint& reference) {
+    std::vector<MethodTrade> trades;
+    std::vector<TradePoint> all;
+    std::vector<std::size_t> owners;  // of each point in `all`
+    for (const auto& [method, points] : methods) {
+        all.insert(all.end(), points.begin(), points.end());
+        owners.resize(all.size(), trades.size());
+        trades.push_back({method, points.size(), 0, hypervolume(points, reference)});
+    }
+    const std::vector<std::size_t> front = pareto_front(all);
+    for (const std::size_t i : front) ++trades[owners[i]].on_front;
+    trades.push_back({"all", all.size(), front.size(), hypervolume(all, reference)});
+    return trades;
 }
 
 std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
@@ -124,12 +160,11 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
         row.label = group.label;
         row.failures = failures_of(group);
         const auto knob = knobs.find(group.method);
-        std::vector<double> errors;
         for (const Json::Value* cell : group.good) {
             if (knob != knobs.end()) row.knob = read_number_or_inf((*cell)["params"][knob->second]);
-            if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
         }
-        row.error = measure::median(errors);
+        row.error = pixel_error(group, metric);
+        row.point = trade_point(group, metric);
         row.frame_ms = measure::run_interval(numbers_of(group.good, "frame_ms", "mean"), seed);
         row.triangles = measure::median(numbers_of(group.good, "triangles", "mean"));
         row.gpu_bytes = measure::median(numbers_of(group.good, "gpu_bytes"));
@@ -143,19 +178,6 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
         for (const std::size_t i : pareto_front(points_of(scenario))) scenario[i].on_front = true;
     });
     return rows;
-}
-
-std::optional<TradePoint> reference_point(std::span<const TradeRow> rows) {
-    constexpr double kWorse = 1.1;
-    TradePoint worst;
-    for (const TradeRow& row : rows) {
-        const TradePoint point = row.point();
-        if (!finite(point)) continue;
-        worst.cost = std::max(worst.cost, kWorse * point.cost);
-        worst.error = std::max(worst.error, kWorse * point.error);
-    }
-    if (worst.cost > 0 && worst.error > 0) return worst;
-    return std::nullopt;
 }
 
 Json::Value to_json(const std::vector<TradeRow>& rows) {
@@ -201,7 +223,7 @@ std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
         text += aligned_table(lines);
         for (const std::string& failure : failures) text += fmt::format("\n- {}", failure);
         if (!failures.empty()) text += "\n";
-        const auto corner = reference ? reference : reference_point(scenario);
+        const auto corner = reference ? reference : reference_point(points_of(scenario));
         if (!corner) return;
         text += fmt::format(
             "\nHypervolume of {} pixel error and frame time, of the rectangle up to "
@@ -209,13 +231,11 @@ std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
             name_of(metric), corner->error, corner->cost,
             reference ? "" : " (a tenth beyond the worst point)");
         std::map<std::string, std::vector<TradePoint>> methods;
-        for (const TradeRow& row : scenario) methods[row.method].push_back(row.point());
+        for (const TradeRow& row : scenario) methods[row.method].push_back(row.point);
         std::vector<std::vector<std::string>> volumes = {{"method", "hypervolume"}};
-        for (const auto& [method, points] : methods) {
-            volumes.push_back({method, fmt::format("{:.4f}", hypervolume(points, *corner))});
+        for (const MethodTrade& trade : method_trades(methods, *corner)) {
+            volumes.push_back({trade.method, fmt::format("{:.4f}", trade.hypervolume)});
         }
-        volumes.push_back(
-            {"all", fmt::format("{:.4f}", hypervolume(points_of(scenario), *corner))});
         text += aligned_table(volumes);
     });
     return text;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "measure/statistics.h"
+#include "report/cell_groups.h"
 
 namespace lodbench::report {
 
@@ -42,26 +43,43 @@ enum class ErrorMetric { p999, max, rms };
 /// one, for that is the surface which the frame times drew. Infinite where it is; nothing where it
 /// was not measured.
 [[nodiscard]] std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric);
+/// The median over the repetitions.
+[[nodiscard]] std::optional<double> pixel_error(const CellGroup& group, ErrorMetric metric);
+
+/// Milliseconds (median over the repetitions of the mean frame time) and pixels; infinite where
+/// absent.
+[[nodiscard]] TradePoint trade_point(const CellGroup& group, ErrorMetric metric);
+
+/// A tenth worse than the worst finite point; nothing where there is none.
+[[nodiscard]] std::optional<TradePoint> reference_point(std::span<const TradePoint> points);
+
+/// What the settings of a method reach together.
+struct MethodTrade {
+    std::string method;
+    std::size_t settings = 0;
+    std::size_t on_front = 0;  ///< of the front of all methods
+    double hypervolume = 0;
+};
+/// Of each method's points by its id; the last is of "all".
+[[nodiscard]] std::vector<MethodTrade> method_trades(
+    const std::map<std::string, std::vector<TradePoint>>& methods, const TradePoint& reference);
 
 /// One setting of a method on one scenario, over its repetitions.
 struct TradeRow {
     std::string scenario, method, label;
     std::optional<double> knob;   ///< value of the quality knob; nothing without one
-    std::optional<double> error;  ///< pixels, see pixel_error; median of the repetitions
+    std::optional<double> error;  ///< pixels, see pixel_error
     std::optional<measure::RunInterval> frame_ms;  ///< of the repetitions' means
+    TradePoint point;                              ///< see trade_point
     std::optional<double> triangles, gpu_bytes, prepare_s;
     bool on_front = false;  ///< of error against frame time, within its scenario
     std::vector<std::string> failures;
-    [[nodiscard]] TradePoint point() const;  ///< milliseconds, pixels; infinite where absent
 };
 
 /// `knobs`: each method's quality knob by its id. Rows in order of scenario, method and knob.
 [[nodiscard]] std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
                                                const std::map<std::string, std::string>& knobs,
                                                ErrorMetric metric, std::uint64_t seed);
-
-/// A tenth worse than the worst finite point of a scenario's rows; nothing where there is none.
-[[nodiscard]] std::optional<TradePoint> reference_point(std::span<const TradeRow> rows);
 
 /// Absent figures are null.
 [[nodiscard]] Json::Value to_json(const std::vector<TradeRow>& rows);

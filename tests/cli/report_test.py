@@ -127,6 +127,37 @@ class Report(unittest.TestCase):
         ringed = {s["name"] for s in plot["series"] for m in s["marks"] if len(m) > 3 and m[3]}
         self.assertEqual(ringed, marked)
 
+    def test_the_hypervolume_is_that_of_the_cells(self):
+        cells = [cell(f"{m}{tau}r{r}", method=m, params={"tau": tau}, repetition=r, time=time + r, error=error)
+                 for m, settings in {"swift": [(1, 10, 4), (2, 20, 2)], "near": [(1, 30, 1), (2, 25, 3)],
+                                     "one": [(1, 40, 8)]}.items() for tau, time, error in settings for r in range(3)]
+        # What its pace showed counts, of each repetition on its own.
+        cells.append(cell("late0", method="late", time=15, error=1, pixel_error_realtime_px={"p999": 3}))
+        cells.append(cell("late1", method="late", time=15, error=1, repetition=1))
+        page, _ = self.make(write_folder(self.root / "run", cells))
+        rows = {row["method"][0]: {field: value for field, (_, value) in row.items()}
+                for row in page.rows("hypervolume")}
+        points = {"swift": [(11, 4), (21, 2)], "near": [(31, 1), (26, 3)], "one": [(41, 8)], "late": [(15, 2)]}
+        points["all"] = sum(points.values(), [])
+        self.assertEqual(set(rows), set(points))
+        width, height = 1.1 * 41, 1.1 * 8
+        on_front = {"swift": 1, "near": 1, "one": 0, "late": 1, "all": 3}
+        for method, mine in points.items():
+            row = rows[method]
+            self.assertEqual(float(row["settings"]), len(mine), method)
+            self.assertEqual(float(row["on_front"]), on_front[method], method)
+            self.assertAlmostEqual(float(row["reference.frame_ms"]), width)
+            self.assertAlmostEqual(float(row["reference.pixel_error_px"]), height)
+            area, ceiling = 0, height
+            for time, error in sorted(mine):
+                area += (width - time) * max(ceiling - error, 0)
+                ceiling = min(ceiling, error)
+            self.assertAlmostEqual(float(row["hypervolume"]), area / width / height, msg=method)
+        self.assertEqual({row["method"][0] for row in page.rows("summary") if row["front"][0]},
+                         {"swift tau=1", "late", "near tau=1"})
+        page, _ = self.make(write_folder(self.root / "plain", [cell("a__r0"), cell("b__r0", method="b")]))
+        self.assertEqual(page.rows("hypervolume"), [])
+
     def test_nothing_out_of_a_file_becomes_markup_or_script(self):
         reference, _ = self.make(write_folder(self.root / "plain", [
             cell(f"c{i}__r0", method=f"m{i}", scenario=f"s{i}", params={f"p{i}": f"v{i}"},

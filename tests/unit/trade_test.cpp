@@ -95,6 +95,35 @@ TEST(Hypervolume, leaves_out_what_lies_beyond_the_reference_or_was_not_measured)
     EXPECT_THROW((void)hypervolume(Points{}, {1, kInfinity}), ContractError);
 }
 
+TEST(MethodTrades, count_the_front_of_all_and_end_with_all_together) {
+    const std::map<std::string, Points> methods = {
+        {"a", {{1, 3}, {3, 2}}}, {"b", {{2, 2}}}, {"c", {{kInfinity, 1}}}};
+    const auto trades = method_trades(methods, {4, 4});
+    ASSERT_EQ(trades.size(), 4U);
+    EXPECT_EQ(trades[0].method, "a");
+    EXPECT_EQ(trades[0].settings, 2U);
+    EXPECT_EQ(trades[0].on_front, 1U);
+    EXPECT_DOUBLE_EQ(trades[0].hypervolume, 4.0 / 16);  // 3 x 1 and 1 x 1
+    EXPECT_EQ(trades[1].on_front, 1U);
+    EXPECT_DOUBLE_EQ(trades[1].hypervolume, 4.0 / 16);
+    EXPECT_EQ(trades[2].settings, 1U);
+    EXPECT_EQ(trades[2].on_front, 0U);
+    EXPECT_EQ(trades[2].hypervolume, 0.0);
+    EXPECT_EQ(trades[3].method, "all");
+    EXPECT_EQ(trades[3].settings, 4U);
+    EXPECT_EQ(trades[3].on_front, 2U);
+    EXPECT_DOUBLE_EQ(trades[3].hypervolume, 5.0 / 16);
+}
+
+TEST(ReferencePoint, is_a_tenth_beyond_the_worst_that_was_measured) {
+    const auto reference = reference_point(Points{{10, 2}, {5, 4}, {99, kInfinity}});
+    ASSERT_TRUE(reference.has_value());
+    EXPECT_DOUBLE_EQ(reference->cost, 11);
+    EXPECT_DOUBLE_EQ(reference->error, 4.4);
+    EXPECT_FALSE(reference_point(Points{{1, kInfinity}}).has_value());
+    EXPECT_FALSE(reference_point(Points{{1, 0}}).has_value());
+}
+
 Json::Value cell(const std::string& method, double tau, int repetition, const std::string& error,
                  double frame_ms) {
     return parse_json(R"({"cell":"x","scenario":"s","method":")" + method +

@@ -59,11 +59,6 @@ std::optional<measure::RunInterval> interval(const CellGroup& group, std::uint64
     return measure::run_interval(values, seed);
 }
 
-std::optional<double> error_of(const CellGroup& group) {
-    const auto realtime = figure(group, "pixel_error_realtime_px", "p999");
-    return realtime ? realtime : figure(group, "pixel_error_px", "p999");
-}
-
 std::vector<double> frame_column(const ResultSet& set, const CellGroup& group, const char* column) {
     std::vector<const std::vector<double>*> runs;
     std::size_t frames = 0;

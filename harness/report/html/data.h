@@ -56,9 +56,6 @@ struct ReportData {
 [[nodiscard]] std::optional<measure::RunInterval> interval(const CellGroup& group,
                                                            std::uint64_t seed, const char* key,
                                                            const char* inner = nullptr);
-/// P99.9 of the pixel error that stands beside its frame time: for an asynchronous method that of
-/// the real-time replay.
-[[nodiscard]] std::optional<double> error_of(const CellGroup& group);
 
 /// A column of the frames, per frame the median over the repetitions; NaN where it is absent. Empty
 /// where no repetition has it.

@@ -24,7 +24,7 @@ struct Cost {
 };
 
 constexpr Cost kCosts[] = {
-    {"time", "Error against frame time", "median frame time, ms", "frame_ms", "median", 1},
+    {"time", "Error against frame time", "mean frame time, ms", "frame_ms", "mean", 1},
     {"triangles", "Error against triangles", "triangles a frame, mean", "triangles", "mean", 1},
     {"gpu", "Error against GPU memory", "allocated on the GPU, MiB", "gpu_bytes", nullptr,
      1048576.0},
@@ -53,7 +53,7 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
     std::size_t infinite = 0;
     for (const CellGroup& group : set.groups) {
         const auto value = figure(group, cost.key, cost.inner);
-        const auto error = error_of(group);
+        const auto error = pixel_error(group, ErrorMetric::p999);
         if (value && error && std::isinf(*error)) ++infinite;
         points.push_back({value ? *value / cost.unit : kAbsent, error.value_or(kAbsent)});
     }
@@ -99,6 +99,39 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
     return plot;
 }
 
+void add_hypervolume(Page& page, const ResultSet& set) {
+    std::map<std::string, std::vector<TradePoint>> methods;
+    std::vector<TradePoint> points;
+    for (const CellGroup& group : set.groups) {
+        points.push_back(trade_point(group, ErrorMetric::p999));
+        methods[group.method].push_back(points.back());
+    }
+    const auto reference = reference_point(points);
+    const bool traded =
+        std::ranges::any_of(methods, [](const auto& method) { return method.second.size() > 1; });
+    if (!reference || !traded) return;
+    Table table = table_of(set, "hypervolume", "Hypervolume, " + set.title);
+    table.columns.push_back({"settings", "settings"});
+    table.columns.push_back({"on the front", "on_front", true,
+                             "settings than which none of any method is both faster (mean frame "
+                             "time) and nearer to the truth (P99.9)"});
+    table.columns.push_back({"hypervolume", "hypervolume", true, "0 to 1; more is better"});
+    table.columns.push_back({"up to, ms", "reference.frame_ms"});
+    table.columns.push_back({"up to, px", "reference.pixel_error_px"});
+    for (const MethodTrade& trade : method_trades(methods, *reference)) {
+        table.rows.push_back({text_field(trade.method), number_field(double(trade.settings), 0),
+                              number_field(double(trade.on_front), 0),
+                              number_field(trade.hypervolume, 4), number_field(reference->cost, 3),
+                              number_field(reference->error, 3)});
+    }
+    page.table(table);
+    page.paragraph(
+        "Hypervolume: the part of the rectangle from nothing up to the frame time and the error "
+        "stated (a tenth beyond the worst setting here) in which some setting of the method is at "
+        "least as good. It compares methods up to the same corner only.",
+        "note");
+}
+
 }  // namespace
 
 void add_trade(Page& page, const ReportData& data, const ResultSet& set) {
@@ -121,6 +154,7 @@ void add_trade(Page& page, const ReportData& data, const ResultSet& set) {
                        "replay, which its frame times showed."
                      : ""),
         "note");
+    add_hypervolume(page, set);
 }
 
 }  // namespace lodbench::report::html
