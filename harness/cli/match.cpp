@@ -27,12 +27,11 @@ struct Options : CampaignOptions {
     int most_probes = 16;
 };
 
-run::MatchTarget read_target(const Options& options) {
-    using Quantity = run::MatchTarget::Quantity;
-    run::MatchTarget target;
+report::MatchTarget read_target(const Options& options) {
+    using Quantity = report::MatchTarget::Quantity;
+    report::MatchTarget target;
     target.metric = read_metric(options.metric);
     target.tolerance = options.tolerance_percent / 100;
-    target.most_probes = options.most_probes;
     const int named = int(!options.error.empty()) + int(!options.triangles.empty()) +
                       int(!options.frame_ms.empty());
     if (named != 1) {
@@ -84,11 +83,11 @@ std::string search_text(const std::vector<run::MatchedMethod>& methods) {
 }
 
 int match(Options& options) {
-    const run::MatchTarget target = read_target(options);
+    const report::MatchTarget target = read_target(options);
     options.finish();
     Progress progress;
     const run::MatchOutcome outcome = run::match(
-        options.request, target, run::executable_path(), progress,
+        options.request, target, options.most_probes, run::executable_path(), progress,
         [](const run::MatchedMethod& method, const run::Probe& probe, const std::string& failure) {
             fmt::print(stderr, "{}: {} = {:.6g} gives {}\n", method.method, method.knob->name,
                        probe.knob, failure.empty() ? number_text(probe.value) : failure);
@@ -105,7 +104,7 @@ int match(Options& options) {
     report::write_whole(outcome.campaign.out / "match.md", "# lodbench match\n\n" + text);
     if (options.json) {
         Json::Value object = to_json(outcome.campaign);
-        object["match"] = run::to_json(target, outcome.methods);
+        object["match"] = report::to_json(run::match_record(target, outcome.methods));
         object["trade"] = report::to_json(rows);
         fmt::print("{}\n", report::to_text(object));
     } else {

@@ -17,7 +17,7 @@ namespace {
 
 const Json::Value& member(const Json::Value& object, const char* key, const std::string& where) {
     if (!object.isObject() || !object.isMember(key)) {
-        throw InputError(fmt::format("{}: '{}' is missing; the file is damaged", where, key));
+        throw InputError(fmt::format("{}: '{}' is missing; {}", where, key, kCopyAgain));
     }
     return object[key];
 }
@@ -69,21 +69,26 @@ std::optional<double> read_number_or_inf(const Json::Value& value) {
     return std::nullopt;
 }
 
+void expect_field(bool good, const std::string& where, const char* key, const char* what) {
+    if (good) return;
+    throw InputError(fmt::format("{}: '{}' is not {}; {}", where, key, what, kCopyAgain));
+}
+
 std::string get_string(const Json::Value& object, const char* key, const std::string& where) {
     const Json::Value& value = member(object, key, where);
-    if (!value.isString()) throw InputError(fmt::format("{}: '{}' is no text", where, key));
+    expect_field(value.isString(), where, key, "text");
     return value.asString();
 }
 
 double get_number(const Json::Value& object, const char* key, const std::string& where) {
     const Json::Value& value = member(object, key, where);
-    if (!value.isNumeric()) throw InputError(fmt::format("{}: '{}' is no number", where, key));
+    expect_field(value.isNumeric(), where, key, "a number");
     return value.asDouble();
 }
 
 const Json::Value& get_array(const Json::Value& object, const char* key, const std::string& where) {
     const Json::Value& value = member(object, key, where);
-    if (!value.isArray()) throw InputError(fmt::format("{}: '{}' is no list", where, key));
+    expect_field(value.isArray(), where, key, "a list");
     return value;
 }
 

@@ -25,8 +25,13 @@ namespace lodbench::report {
 /// The reverse: nothing for anything else.
 [[nodiscard]] std::optional<double> read_number_or_inf(const Json::Value& value);
 
-/// Readers of what was parsed: throw InputError naming `where` and the key for a wrong or missing
-/// type.
+/// The remedy for a file that is damaged.
+inline constexpr const char* kCopyAgain = "the file is damaged: copy the folder again, or run anew";
+
+/// Throws InputError with `where`, the key, what it should be and the remedy unless `good`.
+void expect_field(bool good, const std::string& where, const char* key, const char* what);
+
+/// Readers of what was parsed: throw InputError as expect_field for a wrong or missing type.
 [[nodiscard]] std::string get_string(const Json::Value& object, const char* key,
                                      const std::string& where);
 [[nodiscard]] double get_number(const Json::Value& object, const char* key,

@@ -21,7 +21,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kKeptColumns = {"frame", "wall_ms", "triangles",
                                                           "pixel_p999_px", "popping_p999_px"};
-constexpr const char* kCopyAgain = "the file is damaged: copy the folder again, or run anew";
 
 /// Nothing but a name: what comes out of a file must not lead out of the folder.
 bool is_file_name(const std::string& name) {
@@ -69,8 +68,7 @@ void check_cell(const Json::Value& cell, const std::string& where) {
     (void)get_string(cell, "scenario", where);
     (void)get_string(cell, "status", where);
     const auto expect = [&](const char* key, bool good, const char* what) {
-        if (good) return;
-        throw InputError(fmt::format("{}: '{}' is not {}; {}", where, key, what, kCopyAgain));
+        expect_field(good, where, key, what);
     };
     expect("repetition", cell["repetition"].isInt(), "a whole number");
     expect("params", cell["params"].isObject(), "an object");
@@ -197,6 +195,15 @@ void read_flights(ResultFolder& folder) {
     }
 }
 
+void read_search(ResultFolder& folder) {
+    const fs::path file = folder.path / "match.json";
+    std::error_code absent;
+    if (!fs::is_regular_file(file, absent)) return;
+    const Json::Value json = parse_json(read_text(file), file.string());
+    check_schema(json, file);
+    folder.match = read_match(json, file.string());
+}
+
 }  // namespace
 
 const std::vector<double>* FrameTable::find(std::string_view column) const {
@@ -265,6 +272,7 @@ ResultFolder read_result_folder(const fs::path& path) {
         folder.frames.emplace(id, parse_frame_table(csv, file.string()));
     }
     read_flights(folder);
+    read_search(folder);
     return folder;
 }
 

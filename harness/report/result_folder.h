@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "report/match_record.h"
+
 namespace lodbench::report {
 
 /// frames/<cell>.csv. Of its columns only those that a report draws are kept.
@@ -40,6 +42,7 @@ struct ResultFolder {
     std::vector<Json::Value> cells;
     std::map<std::string, FrameTable> frames;     ///< by cell; of the cells that are ok
     std::map<std::string, FlightRecord> flights;  ///< by scenario; of those that have one
+    std::optional<MatchRecord> match;             ///< of a folder that `match` wrote
     std::vector<std::string> warnings;            ///< that something is not there yet
 };
 

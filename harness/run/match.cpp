@@ -64,65 +64,32 @@ private:
 
 }  // namespace
 
-std::string MatchTarget::words() const {
-    switch (quantity) {
-        case Quantity::pixel_error:
-            return fmt::format("{} of the pixel error = {} px", report::name_of(metric), value);
-        case Quantity::triangles: return fmt::format("mean triangles = {}", value);
-        case Quantity::frame_ms: break;
-    }
-    return fmt::format("mean frame time = {} ms", value);
-}
-
-std::optional<double> MatchTarget::measured(const Json::Value& cell) const {
-    const auto mean = [&](const char* field) -> std::optional<double> {
-        const Json::Value& object = cell[field];
-        return object.isObject() ? report::read_number_or_inf(object["mean"]) : std::nullopt;
-    };
-    switch (quantity) {
-        case Quantity::pixel_error: return report::pixel_error(cell, metric);
-        case Quantity::triangles: return mean("triangles");
-        case Quantity::frame_ms: break;
-    }
-    return mean("frame_ms");
-}
-
-Json::Value to_json(const MatchTarget& target, const std::vector<MatchedMethod>& methods) {
-    Json::Value json;
-    json["schema_version"] = report::kSchemaVersion;
-    constexpr const char* kNames[] = {"pixel_error_px", "triangles", "frame_ms"};
-    json["quantity"] = kNames[int(target.quantity)];
-    json["metric"] = target.quantity == MatchTarget::Quantity::pixel_error
-                         ? Json::Value(report::name_of(target.metric))
-                         : Json::Value("mean");
-    json["target"] = target.value;
-    json["tolerance"] = target.tolerance;
-    json["methods"] = Json::arrayValue;
+report::MatchRecord match_record(const report::MatchTarget& target,
+                                 const std::vector<MatchedMethod>& methods) {
+    report::MatchRecord record;
+    record.target = target;
     for (const MatchedMethod& method : methods) {
-        Json::Value entry;
-        entry["method"] = method.method;
-        entry["knob"] = method.knob ? Json::Value(method.knob->name) : Json::Value::null;
-        entry["outcome"] =
-            method.knob ? Json::Value(name_of(method.search.outcome)) : Json::Value::null;
-        const auto& best = method.search.best;
-        entry["knob_value"] = best ? Json::Value(best->knob) : Json::Value::null;
-        entry["achieved"] = best ? report::number_or_inf(best->value) : Json::Value::null;
-        entry["monotone"] = method.knob ? Json::Value(method.search.monotone) : Json::Value::null;
-        entry["failure"] = method.failure.empty() ? Json::Value::null : Json::Value(method.failure);
-        entry["probes"] = Json::arrayValue;
-        for (const Probe& probe : method.search.probes) {
-            Json::Value pair = Json::arrayValue;
-            pair.append(probe.knob);
-            pair.append(report::number_or_inf(probe.value));
-            entry["probes"].append(pair);
+        report::MatchRecord::Method& entry = record.methods.emplace_back();
+        entry.method = method.method;
+        if (!method.failure.empty()) entry.failure = method.failure;
+        if (!method.knob) continue;
+        entry.knob = method.knob->name;
+        entry.outcome = name_of(method.search.outcome);
+        entry.monotone = method.search.monotone;
+        if (const auto& best = method.search.best) {
+            entry.knob_value = best->knob;
+            entry.achieved = best->value;
         }
-        json["methods"].append(entry);
+        for (const Probe& probe : method.search.probes) {
+            entry.probes.push_back({probe.knob, probe.value});
+        }
     }
-    return json;
+    return record;
 }
 
-MatchOutcome match(const RunRequest& request, const MatchTarget& target, const fs::path& program,
-                   CampaignObserver& observer, const ProbeObserver& probed) {
+MatchOutcome match(const RunRequest& request, const report::MatchTarget& target, int most_probes,
+                   const fs::path& program, CampaignObserver& observer,
+                   const ProbeObserver& probed) {
     if (request.scenarios.size() > 1) {
         throw InputError("match: name one scenario; a knob that fits one flight fits no other");
     }
@@ -162,7 +129,7 @@ MatchOutcome match(const RunRequest& request, const MatchTarget& target, const f
                                                  method.knob->text(value)));
             probe.out = request.out / "search" / fmt::format("{}-{:02}", method.method, number++);
             probe.overrides.repetitions = 1;
-            probe.overrides.truth = target.quantity == MatchTarget::Quantity::pixel_error;
+            probe.overrides.truth = target.quantity == report::MatchTarget::Quantity::pixel_error;
             const CampaignOutcome flown = run_campaign(probe, program, quiet);
             if (!flown.error.empty()) throw EnvironmentError(flown.error);
             const Json::Value& cell = flown.cells.front();
@@ -177,7 +144,7 @@ MatchOutcome match(const RunRequest& request, const MatchTarget& target, const f
             return measured;
         };
         method.search =
-            search_knob(*method.knob, target.value, target.tolerance, target.most_probes, measure);
+            search_knob(*method.knob, target.value, target.tolerance, most_probes, measure);
     }
 
     RunRequest final = request;
@@ -199,8 +166,9 @@ MatchOutcome match(const RunRequest& request, const MatchTarget& target, const f
             fmt::format("match: no method could be flown; the last said: {}",
                         outcome.methods.empty() ? "" : outcome.methods.back().failure));
     }
-    report::write_whole(request.out / "match.json",
-                        report::to_text(to_json(target, outcome.methods), true) + "\n");
+    report::write_whole(
+        request.out / "match.json",
+        report::to_text(to_json(match_record(target, outcome.methods)), true) + "\n");
     outcome.campaign = run_campaign(final, program, observer);
     return outcome;
 }
