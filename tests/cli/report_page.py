@@ -112,7 +112,21 @@ def frames(count=5, time=10.1):
     return FRAMES + "".join(f"{i},{time + i % 3},{1000 + i},{0.1 if i % 2 == 0 else ''},\n" for i in range(count))
 
 
-def write_folder(path, cells, run=None, csv=None):
+def searched(method, knob="tau", probes=(), taken=None, outcome="met", monotone=True, failure=None):
+    """A method of match.json; without a knob it was flown as it is."""
+    return {"method": method, "knob": knob, "outcome": outcome if knob else None, "monotone": monotone if knob else None,
+            "knob_value": taken, "achieved": dict(probes).get(taken), "failure": failure,
+            "probes": [list(probe) for probe in probes]}
+
+
+def match(methods, **more):
+    record = {"schema_version": 1, "quantity": "pixel_error_px", "metric": "p999", "target": 2.0, "tolerance": 0.05,
+              "methods": methods}
+    record.update(more)
+    return record
+
+
+def write_folder(path, cells, run=None, csv=None, match=None):
     """A results folder with these cells, which may hold anything."""
     for part in ("frames", "shots", "flights"):
         (path / part).mkdir(parents=True, exist_ok=True)
@@ -121,6 +135,8 @@ def write_folder(path, cells, run=None, csv=None):
     context.update(run or {})
     (path / "run.json").write_text(json.dumps(context))
     (path / "cells.jsonl").write_text("".join(json.dumps(c) + "\n" for c in cells))
+    if match is not None:
+        (path / "match.json").write_text(json.dumps(match))
     for record in cells:
         if record["status"] == "ok":
             (path / "frames" / (record["cell"] + ".csv")).write_text(csv or frames())

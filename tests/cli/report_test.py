@@ -17,7 +17,7 @@ import sys
 import tempfile
 import unittest
 
-from report_page import (FRAMES, Page, cell, frames, png, report, value_of, write_folder)
+from report_page import (FRAMES, Page, cell, frames, match, png, report, searched, value_of, write_folder)
 
 BINARY = sys.argv.pop(1)
 HOSTILE = ['<script>alert(1)</script>', '"><img src=x onerror=alert(1)>', "</title></style></script><svg onload=alert(1)>",
@@ -158,13 +158,58 @@ class Report(unittest.TestCase):
         page, _ = self.make(write_folder(self.root / "plain", [cell("a__r0"), cell("b__r0", method="b")]))
         self.assertEqual(page.rows("hypervolume"), [])
 
+    def test_equal_accuracy_is_what_match_found_and_what_its_cells_cost(self):
+        methods = [searched("lindstrom", probes=[(1.0, 0.9), (4.0, "inf"), (2.125, 2.03125)], taken=2.125),
+                   searched("pgm", "grid", [(240.0, 8.5), (2048.0, 3.5), (4096.0, None)], 2048.0, "unreachable", False,
+                            "out of memory"), searched("full-grid", None)]
+        cells = [cell(f"lindstrom{r}", time=10 + r, repetition=r, error=2.0 + r) for r in range(3)]
+        cells += [cell("pgm0", method="pgm", time=30, error=3.5), cell("full", method="full-grid", time=40, error=0)]
+        page, text = self.make(write_folder(self.root / "run", cells, match=match(methods)),
+                               more=["--csv", self.root / "csv"])
+        self.assertIn("Target: p999 of the pixel error = 2 px, within 5 %.", text)
+        self.assertLess(text.index('id="set1-match"'), text.index('id="set1-trade"'))
+        rows = page.rows("match")
+        self.assertEqual([row["method"][0] for row in rows], [m["method"] for m in methods])
+        for row, method in zip(rows, methods):
+            for field in ("knob_value", "achieved"):
+                self.assertEqual(row[field][1], "" if method[field] is None else f"{method[field]:g}", field)
+            self.assertEqual(row["probes"][1], str(len(method["probes"])))
+            self.assertEqual(row["knob"][0], method["knob"] or "none")
+            self.assertEqual(row["outcome"][0], method["outcome"] or "-")
+            self.assertEqual(row["monotone"][0], {True: "yes", False: "no", None: "-"}[method["monotone"]])
+            self.assertEqual(row["failure"][0], method["failure"] or "-")
+        costs = {row["method"][0]: row for row in page.rows("equal_accuracy")}
+        for name in ("lindstrom", "pgm", "full-grid"):
+            mine = [c for c in cells if c["method"] == name]
+            self.assertEqual(float(costs[name]["measured"][1]),
+                             statistics.median(c["pixel_error_px"]["p999"] for c in mine))
+            for field in ("frame_ms.median", "triangles.mean", "gpu_bytes", "prepare_s"):
+                self.assertEqual(float(costs[name][field][1]), statistics.median(value_of(c, field) for c in mine), field)
+        plot = next(p for p in page.data()["plots"] if p["id"] == "set1-match-probes")
+        drawn = {s["name"]: s["marks"] for s in plot["series"]}
+        self.assertEqual(drawn, {
+            "target": [[0, 2], [2, 2]],
+            "lindstrom": [[0, 0.9, "lindstrom tau=1", False], [2, 2.03125, "lindstrom tau=2.125", True]],
+            "pgm": [[0, 8.5, "pgm grid=240", False], [1, 3.5, "pgm grid=2048", True]]})
+        self.assertIn("2 of the probes failed or left ground uncovered", text)
+        with open(self.root / "csv" / "match.csv", newline="") as stream:
+            self.assertEqual([row["achieved"] for row in csv.DictReader(stream)], ["2.03125", "3.5", ""])
+        for quantity, field in (("triangles", "triangles.mean"), ("frame_ms", "frame_ms.mean")):
+            page, _ = self.make(write_folder(self.root / quantity, cells[-1:], match=match(
+                [searched("full-grid", None)], quantity=quantity, metric="mean", target=1000)))
+            self.assertEqual(float(page.rows("equal_accuracy")[0]["measured"][1]), value_of(cells[-1], field))
+        page, text = self.make(write_folder(self.root / "plain", cells))
+        self.assertEqual(page.rows("match") + page.rows("equal_accuracy"), [])
+        self.assertNotIn("Equal accuracy", text)
+
     def test_nothing_out_of_a_file_becomes_markup_or_script(self):
         reference, _ = self.make(write_folder(self.root / "plain", [
             cell(f"c{i}__r0", method=f"m{i}", scenario=f"s{i}", params={f"p{i}": f"v{i}"},
                  warnings=[f"w{i}"]) for i in range(len(HOSTILE))]
             + [cell(f"f{i}", method=f"m{i}", scenario=f"s{i}", params={f"p{i}": f"u{i}"}, status="failed",
                     reason="r") for i in range(len(HOSTILE))],
-            run={"warnings": ["w"], "command_line": "c", "commit": "c", "tool_version": "t"}))
+            run={"warnings": ["w"], "command_line": "c", "commit": "c", "tool_version": "t"},
+            match=match([searched(f"m{i}", f"p{i}", [(1, 2)], 1, failure="f") for i in range(len(HOSTILE))])))
         cells = [cell(f"c{i}__r0", method=h, scenario=h, params={h: "v" + h}, warnings=[h])
                  for i, h in enumerate(HOSTILE)]
         cells += [cell(f"f{i}", method=h, scenario=h, params={h: "u" + h}, status="failed", reason=h)
@@ -173,7 +218,8 @@ class Report(unittest.TestCase):
         run = {"warnings": [everything], "command_line": everything, "commit": everything, "tool_version": everything,
                "scenarios": [{"name": everything, "text": everything}],
                "gl": {"renderer": everything, "software": True, "timer_verdict": everything}, everything: everything}
-        page, text = self.make(write_folder(self.root / HOSTILE[1].replace("/", ""), cells, run))
+        search = match([searched(h, h, [(1, 2)], 1, h, failure=h) for h in HOSTILE + ["<b>not flown</b>"]])
+        page, text = self.make(write_folder(self.root / HOSTILE[1].replace("/", ""), cells, run, match=search))
         tags = {tag for tag, _ in page.elements}
         self.assertLessEqual(tags, {tag for tag, _ in reference.elements} | {"pre", "details", "summary"})
         self.assertNotIn("img", tags)
@@ -190,6 +236,8 @@ class Report(unittest.TestCase):
         for hostile in HOSTILE[:5]:
             self.assertIn(hostile, titles)
             self.assertIn(hostile, [row["method"][0].split(" " + hostile)[0] for row in page.rows("summary")])
+        for row, hostile in zip(page.rows("match"), HOSTILE[:5]):
+            self.assertEqual([row[field][0] for field in ("method", "knob", "outcome", "failure")], [hostile] * 4)
         self.assertNotIn("\0", text)
 
     def test_the_page_asks_for_nothing_and_its_policy_forbids_it(self):
@@ -290,6 +338,12 @@ class Report(unittest.TestCase):
         def change(file, old, new):
             return lambda folder: (folder / file).write_text((folder / file).read_text().replace(old, new, 1))
 
+        def searched_as(**more):
+            return lambda folder: (folder / "match.json").write_text(json.dumps(match([searched("m")]) | more))
+
+        def found(**more):
+            return searched_as(methods=[searched("m") | more])
+
         cases = {
             "absent": (lambda f: (f / "run.json").unlink(), "run.json: there is no such file"),
             "no-cells": (lambda f: (f / "cells.jsonl").unlink(), "cells.jsonl: there is no such file"),
@@ -312,6 +366,25 @@ class Report(unittest.TestCase):
             "header": (lambda f: (f / "frames" / "b__r0.csv").write_text("a,b\n1,2\n"), "no column 'frame'"),
             "flight": (lambda f: (f / "flights" / "demo.json").write_text('{"schema_version": 1}'),
                        "demo.json: 'south_west' is missing"),
+            "match-json": (lambda f: (f / "match.json").write_text("{"), "match.json: this is not JSON"),
+            "match-schema": (searched_as(schema_version=2), "match.json: schema_version is 2, expected 1"),
+            "match-quantity": (searched_as(quantity="beauty"), "match.json: 'quantity' is not pixel_error_px"),
+            "match-metric": (searched_as(metric="mean"), "match.json: 'metric' is not p999"),
+            "match-mean": (searched_as(quantity="triangles"), "match.json: 'metric' is not mean"),
+            "match-target": (searched_as(target=0), "match.json: 'target' is not positive"),
+            "match-tolerance": (searched_as(tolerance="5 %"), "match.json: 'tolerance' is not a number"),
+            "match-wide": (searched_as(tolerance=1), "match.json: 'tolerance' is not between 0 and 1"),
+            "match-methods": (searched_as(methods={}), "match.json: 'methods' is not a list"),
+            "match-method": (searched_as(methods=[7]), "match.json: methods: 'method' is missing"),
+            "match-knob": (found(knob=1), "match.json: method 'm': 'knob' is not text or null"),
+            "match-outcome": (found(outcome=[]), "match.json: method 'm': 'outcome' is not text or null"),
+            "match-failure": (found(failure={}), "match.json: method 'm': 'failure' is not text or null"),
+            "match-value": (found(knob_value="1"), "match.json: method 'm': 'knob_value' is not a number or null"),
+            "match-achieved": (found(achieved="x"), "match.json: method 'm': 'achieved' is not a number"),
+            "match-monotone": (found(monotone=1), "match.json: method 'm': 'monotone' is not true, false or null"),
+            "match-probes": (found(probes=None), "match.json: method 'm': 'probes' is not a list"),
+            "match-probe": (found(probes=[[1]]), "match.json: method 'm': 'probes' is not a list of knob value"),
+            "match-probed": (found(probes=[[1, "x"]]), "match.json: method 'm': 'probes' is not a list of knob value"),
             "deep": (lambda f: (f / "run.json").write_text("[" * 5000), "run.json: this is not JSON"),
         }
         self.out.write_text("as it was")

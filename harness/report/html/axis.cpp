@@ -10,9 +10,9 @@
 
 namespace lodbench::report::html {
 
-Axis::Axis(std::span<const double> values, bool logarithmic, bool from_zero, double begin,
-           double end)
-    : logarithmic_(logarithmic), begin_(begin), end_(end) {
+Axis::Axis(std::span<const double> values, Scale scale, double begin, double end)
+    : scale_(scale), begin_(begin), end_(end) {
+    const bool logarithmic = scale == Scale::logarithmic;
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (const double value : values) {
@@ -22,7 +22,7 @@ Axis::Axis(std::span<const double> values, bool logarithmic, bool from_zero, dou
         high = std::max(high, scaled);
     }
     if (low > high) return;  // nothing: 0 .. 1
-    if (from_zero && !logarithmic) low = std::min(low, 0.0);
+    if (scale == Scale::from_zero) low = std::min(low, 0.0);
     const double size = high - low;
     const double margin = size > 0      ? 0.05 * size
                           : logarithmic ? 0.3
@@ -33,15 +33,16 @@ Axis::Axis(std::span<const double> values, bool logarithmic, bool from_zero, dou
 
 double Axis::place(double value) const {
     double scaled = value;
-    if (logarithmic_) scaled = value > 0 ? std::log10(value) : low_;
+    if (scale_ == Scale::logarithmic) scaled = value > 0 ? std::log10(value) : low_;
     const double fraction = std::clamp((scaled - low_) / (high_ - low_), 0.0, 1.0);
     return begin_ + fraction * (end_ - begin_);
 }
 
 std::vector<double> Axis::ticks() const {
     std::vector<double> ticks;
-    if (!logarithmic_) {
-        const double step = nice_scale((high_ - low_) / 6);
+    if (scale_ != Scale::logarithmic) {
+        const double nice = nice_scale((high_ - low_) / 6);
+        const double step = scale_ == Scale::counting ? std::max(1.0, nice) : nice;
         for (double k = std::ceil(low_ / step); k * step <= high_ && ticks.size() < 20; ++k) {
             ticks.push_back(k * step);
         }

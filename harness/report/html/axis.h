@@ -9,16 +9,19 @@ namespace lodbench::report::html {
 
 class Axis {
 public:
-    /// Spans the finite values among `values` from place `begin` to place `end`, with a margin;
-    /// from zero on where `from_zero`. Logarithmic: what is not positive stands at the beginning.
-    Axis(std::span<const double> values, bool logarithmic, bool from_zero, double begin,
-         double end);
+    enum class Scale {
+        from_zero,    ///< linear, with zero on it
+        counting,     ///< linear, of whole numbers
+        logarithmic,  ///< what is not positive stands at the beginning
+    };
+    /// Spans the finite values among `values` from place `begin` to place `end`, with a margin.
+    Axis(std::span<const double> values, Scale scale, double begin, double end);
 
     [[nodiscard]] double place(double value) const;
     [[nodiscard]] std::vector<double> ticks() const;
 
 private:
-    bool logarithmic_;
+    Scale scale_;
     double begin_, end_;         // places
     double low_ = 0, high_ = 1;  // values, or their logarithms
 };

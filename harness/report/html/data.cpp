@@ -14,6 +14,9 @@ ReportData arrange(const std::vector<ResultFolder>& folders) {
     ReportData data;
     data.folders = &folders;
     for (const ResultFolder& folder : folders) {
+        if (folder.match) {
+            for (const auto& method : folder.match->methods) data.colors.emplace(method.method, 0);
+        }
         for (CellGroup& group : group_cells(folder.cells)) {
             data.colors.emplace(group.method, 0);
             const bool begins = data.sets.empty() || data.sets.back().folder != &folder ||

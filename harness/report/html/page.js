@@ -57,7 +57,11 @@
     animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
   }, more);
 
-  const frames = (plot) => Math.max(...plot.series.flatMap((s) => s.marks.map((m) => m[0])));
+  // An axis that counts has whole ticks, and ends with the last.
+  const counting = (plot) => ({
+    max: Math.max(...plot.series.flatMap((s) => s.marks.map((m) => m[0]))),
+    afterBuildTicks: (axis) => { axis.ticks = axis.ticks.filter((t) => Number.isInteger(t.value)); },
+  });
   const curves = (plot, logarithmic) => {
     const marks = (series) => series.marks.filter((mark) => typeof mark[0] === 'number' && typeof mark[1] === 'number');
     // What is not positive has no place on a logarithmic axis: it stands at its beginning.
@@ -68,7 +72,8 @@
       const values = plot.series.flatMap((s) => marks(s).map((m) => place(m[k], k)));
       return {min: Math.min(...values) / 1.3, max: Math.max(...values) * 1.3};
     };
-    const place = (value, k) => logarithmic && !(value > 0) ? floors[k] : value;
+    const isLogarithmic = (k) => logarithmic && !(k === 0 && plot.counts);
+    const place = (value, k) => isLogarithmic(k) && !(value > 0) ? floors[k] : value;
     const tooltip = (item) => {
       const mark = item.raw.mark;
       return (mark[2] || item.dataset.label) + ': ' + tick(mark[0]) + ', ' + tick(mark[1]);
@@ -83,7 +88,7 @@
             label: series.name, hidden: isHidden(plot, series.toggle), showLine: series.joined,
             data: points.map((mark) => ({x: place(mark[0], 0), y: place(mark[1], 1), mark})),
             borderColor: color, backgroundColor: color, borderDash: dashes[series.variant],
-            borderWidth: series.color < 0 ? 1.2 : 1.8, pointStyle: shapes[series.shape % 4],
+            borderWidth: series.color < 0 ? 1.2 : 1.8, clip: 8, pointStyle: shapes[series.shape % 4],
             pointRadius: series.dots ? 4 : 0, pointHitRadius: series.color < 0 ? 0 : 8,
             pointBorderColor: points.map((mark) => mark[3] ? colors.ink : color),
             pointBorderWidth: points.map((mark) => mark[3] ? 2 : 0),
@@ -92,14 +97,15 @@
       },
       options: options({
         interaction: {mode: 'nearest', intersect: true},
+        layout: {padding: {right: 8}},
         scales: {
-          x: scale(plot.x, logarithmic, plot.x === 'frame' ? {max: frames(plot)} : logarithmic ? span(0) : {beginAtZero: true, grace: '5%'}),
+          x: scale(plot.x, isLogarithmic(0), plot.counts ? counting(plot) : logarithmic ? span(0) : {beginAtZero: true, grace: '5%'}),
           y: scale(plot.y, logarithmic, logarithmic ? span(1) : {beginAtZero: true, grace: '4%'}),
         },
         plugins: {
           legend: {display: false},
-          tooltip: {callbacks: {label: tooltip, title: (items) => plot.x === 'frame' && items.length
-              ? 'frame ' + items[0].raw.mark[0] : ''}},
+          tooltip: {callbacks: {label: tooltip, title: (items) => plot.counts && items.length
+              ? plot.x + ' ' + items[0].raw.mark[0] : ''}},
         },
       }),
     };

@@ -89,6 +89,7 @@ Json::Value to_json(const Plot& plot) {
     json["x"] = plot.x_title;
     json["y"] = plot.y_title;
     json["log"] = plot.logarithmic;
+    json["counts"] = plot.counts;
     if (plot.reference) json["reference"] = *plot.reference;
     json["series"] = Json::arrayValue;
     for (const Series& series : plot.series) {
@@ -107,9 +108,9 @@ Json::Value to_json(const Plot& plot) {
             point.append(finite_or_text(mark.x));
             point.append(finite_or_text(mark.y));
             const bool interval = !std::isnan(mark.low) && !std::isnan(mark.high);
-            if (interval || mark.front || !mark.label.empty()) {
+            if (interval || mark.ringed || !mark.label.empty()) {
                 point.append(mark.label);
-                point.append(mark.front);
+                point.append(mark.ringed);
             }
             if (interval) {
                 point.append(finite_or_text(mark.low));

@@ -20,7 +20,7 @@ struct Mark {
     double low = kAbsent;  ///< of a bar: its interval
     double high = kAbsent;
     std::string label = {};  ///< what it is of, where the series does not say
-    bool front = false;      ///< on the Pareto front: ringed
+    bool ringed = false;     ///< on the Pareto front, or what was taken
 };
 
 /// What has one colour and one dash. Colours and dashes repeat where there are more than the page
@@ -48,6 +48,7 @@ struct Plot {
     std::string id;  ///< of one page
     std::string title;
     std::string x_title, y_title;  ///< with units
+    bool counts = false;  ///< x is a number of something: that axis is linear, its ticks whole
     bool can_be_logarithmic = false;
     bool logarithmic =
         false;  ///< as it is drawn at first, both axes; of bars the one that they have

@@ -90,6 +90,10 @@ std::string y_axis(const Axis& axis, const std::string& title) {
                      (kTop + kBottom) / 2, escape(title));
 }
 
+Axis::Scale scale_of(const Plot& plot) {
+    return plot.logarithmic ? Axis::Scale::logarithmic : Axis::Scale::from_zero;
+}
+
 std::string series_svg(const Series& series, const Axis& x, const Axis& y) {
     std::string line;
     std::string dots;
@@ -98,7 +102,7 @@ std::string series_svg(const Series& series, const Axis& x, const Axis& y) {
         const double left = x.place(mark.x);
         const double top = y.place(mark.y);
         line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? 'M' : 'L', left, top);
-        if (mark.front) {
+        if (mark.ringed) {
             dots += fmt::format("<circle class=\"ring\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>",
                                 left, top, kDot + 3);
         }
@@ -128,8 +132,9 @@ std::string curves_svg(const Plot& plot) {
             ys.push_back(mark.y);
         }
     }
-    const Axis x(xs, plot.logarithmic, plot.can_be_logarithmic, kLeft, kRight);
-    const Axis y(ys, plot.logarithmic, true, kBottom, kTop);
+    const Axis::Scale scale = scale_of(plot);
+    const Axis x(xs, plot.counts ? Axis::Scale::counting : scale, kLeft, kRight);
+    const Axis y(ys, scale, kBottom, kTop);
     std::string svg = open_svg(plot, kHeight) +
                       x_axis(x, plot.x_title, kTop, kBottom, kLeft, kRight) +
                       y_axis(y, plot.y_title);
@@ -178,7 +183,7 @@ std::string bars_svg(const Plot& plot) {
         }
     }
     if (plot.reference) values.push_back(*plot.reference);
-    const Axis axis(values, plot.logarithmic, true, kBarLeft, kBarRight);
+    const Axis axis(values, scale_of(plot), kBarLeft, kBarRight);
     const double zero = plot.logarithmic ? kBarLeft : axis.place(0);
     std::string svg =
         open_svg(plot, bottom + 46) + x_axis(axis, plot.x_title, kTop, bottom, kBarLeft, kBarRight);

@@ -16,6 +16,7 @@ void add_set(Page& page, const ReportData& data, const ResultSet& set) {
     add_summary(page, data, set);
     add_failures(page, set);
     add_legend(page, data, set);
+    add_match(page, data, set);
     add_trade(page, data, set);
     add_map(page, data, set);  // before the pictures, so that the budget has room for it
     add_curves(page, data, set);

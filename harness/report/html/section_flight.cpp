@@ -21,6 +21,7 @@ Plot curve_plot(const ReportData& data, const ResultSet& set, const char* column
     plot.title = title;
     plot.x_title = "frame";
     plot.y_title = axis;
+    plot.counts = true;
     bool thinner = false;
     const std::vector<std::size_t> chosen = choose_groups(set, kMostCurves);
     for (const std::size_t i : chosen) {

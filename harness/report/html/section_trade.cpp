@@ -83,7 +83,7 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
         series.color = data.color_of(group);
         Mark mark{points[i].cost, points[i].error};
         mark.label = group.label;
-        mark.front = std::ranges::find(front, i) != front.end();
+        mark.ringed = std::ranges::find(front, i) != front.end();
         series.marks.push_back(std::move(mark));
     }
     for (auto& [method, series] : by_method) {
