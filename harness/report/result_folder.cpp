@@ -145,6 +145,23 @@ glm::dvec3 read_vector(const Json::Value& value, const std::string& where) {
     return result;
 }
 
+std::vector<NeededTiles> read_needed(const Json::Value& flight, const std::string& file) {
+    std::vector<NeededTiles> needed;
+    if (!flight.isMember("needed")) return needed;
+    const std::string where = file + ": needed";
+    for (const Json::Value& json : get_array(flight, "needed", file)) {
+        NeededTiles entry;
+        entry.target_px = get_number(json, "target_px", where);
+        expect_field(entry.target_px > (needed.empty() ? 0 : needed.back().target_px), where,
+                     "target_px", "positive and rising");
+        entry.tiles = get_number(json, "tiles", where);
+        entry.samples = get_number(json, "samples", where);
+        entry.most_tiles_in_a_frame = get_number(json, "most_tiles_in_a_frame", where);
+        needed.push_back(entry);
+    }
+    return needed;
+}
+
 FlightRecord read_flight(const fs::path& file, const fs::path& picture) {
     const std::string where = file.string();
     const Json::Value json = parse_json(read_text(file), where);
@@ -179,6 +196,7 @@ FlightRecord read_flight(const fs::path& file, const fs::path& picture) {
                                      flight.positions.size(), flight.directions.size(),
                                      kCopyAgain));
     }
+    flight.needed = read_needed(json, where);
     if (fs::is_regular_file(picture)) flight.hillshade = picture;
     return flight;
 }

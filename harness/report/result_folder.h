@@ -24,6 +24,13 @@ struct FrameTable {
     [[nodiscard]] const std::vector<double>* find(std::string_view column) const;
 };
 
+/// What the views of a flight needed: of all frames together, the tiles of 65 × 65 samples in view
+/// at the coarsest level that keeps a screen error.
+struct NeededTiles {
+    double target_px = 0;
+    double tiles = 0, samples = 0, most_tiles_in_a_frame = 0;
+};
+
 /// flights/<scenario>.json: where the cameras of a flight stood, and the ground below.
 struct FlightRecord {
     glm::dvec2 low{0.0}, high{0.0};  ///< corners of the terrain, metres
@@ -32,6 +39,7 @@ struct FlightRecord {
     double min_height = 0, max_height = 0;
     std::vector<glm::dvec3> positions;   ///< of each frame, metres
     std::vector<glm::dvec3> directions;  ///< of view, length 1
+    std::vector<NeededTiles> needed;     ///< by rising error; empty where it is not said
     std::filesystem::path hillshade;     ///< PNG; empty where there is none
 };
 

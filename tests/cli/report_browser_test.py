@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 from devtools import Browser
-from report_page import cell, png, report, write_folder
+from report_page import cell, economy, flight, match, needed, png, report, searched, write_folder
 
 BINARY = sys.argv.pop(1)
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
@@ -25,8 +25,11 @@ class Shown(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         folder = write_folder(pathlib.Path(scratch.name) / "run", [
             cell(f"m{i}t{tau}r{r}", method="<script>alert(1)</script>" if i == 0 else f"method-{i}", params={"tau": tau},
-                 repetition=r, scenario='"><img src=x onerror=alert(1)>', time=(i + 1) * 7 / tau, error=tau / (i + 1))
-            for i in range(3) for tau in (0.5, 1, 2) for r in range(2)])
+                 repetition=r, scenario='"><img src=x onerror=alert(1)>', time=(i + 1) * 7 / tau, error=tau / (i + 1),
+                 economy=[economy(10 * k, 9000, (tau, 3000, 3 + k)) for k in range(3)])
+            for i in range(3) for tau in (0.5, 1, 2) for r in range(2)],
+            match=match([searched("method-1", probes=[(1, 0.05), (4, 90), (2, 2)], taken=2)]),
+            flights={'"><img src=x onerror=alert(1)>': flight(needed=[needed(0.5, 90, 30), needed(1, 30, 9)])})
         (folder / "shots" / "m1t1r0__worst.png").write_bytes(png(400, 300))
         status, output = report(BINARY, folder)
         self.assertEqual(status, 0, output)
@@ -55,6 +58,14 @@ class Shown(unittest.TestCase):
                     self.assertGreater(figures, 10)
                     self.assertEqual((canvases, blank), (figures, 0))
                     self.check_silence()
+
+    def test_an_axis_that_counts_is_linear_with_whole_ticks(self):
+        self.browser.open(self.url, 1440, "light")
+        types, ticks = self.browser.evaluate(
+            "(() => { const s = Chart.getChart(document.querySelector('#set1-match-probes canvas')).scales; "
+            "return [[s.x.type, s.y.type], s.x.ticks.map((t) => t.value)]; })()")
+        self.assertEqual(types, ["linear", "logarithmic"])
+        self.assertEqual(ticks, [0, 1, 2])
 
     def test_keyboard_alone_hides_a_method_and_turns_an_axis(self):
         self.browser.open(self.url, 1440, "light")

@@ -95,8 +95,9 @@ def cell(name, method="lindstrom", scenario="demo", repetition=0, params=None, t
         "cpu_ms": summary(time * 2), "jank_ms": 1.25, "triangles": {"mean": 1234.5 / time, "min": 1, "max": 9},
         "draw_calls": {"mean": 1, "min": 1, "max": 1}, "uploaded_bytes": {"mean": 10, "min": 1, "max": 90},
         "prepare_s": 0.1 + 0.2, "prepare_cpu_s": 0.4, "prepare_cached": False, "upload_s": 0.01,
-        "samples_served": 17, "gpu_bytes": 12345678, "peak_rss_bytes": 98765432, "counters": {},
-        "claimed_px": 1.0, "warnings": [], "truth_frames": 3, "screen_error_px": {"max": error * 3, "p999": error * 2},
+        "samples_prepared": 8, "samples_served": 17, "tiles_served": 3, "terrain_bytes_read": 65536, "gpu_bytes": 12345678, "peak_rss_bytes": 98765432, "counters": {},
+        "claimed_px": 1.0, "warnings": [], "truth_frames": 3, "economy": None,
+        "screen_error_px": {"max": error * 3, "p999": error * 2, "max_covered": error * 2.5},
         "pixel_error_px": {"max": error * 2, "p999": error, "worst": {"frame": 2, "row": 1, "column": 1}},
         "pixel_error_realtime_px": None, "crack_pixels": {"total": 0, "max": 0},
         "popping_px": {"max": 0.5, "p999": error / 3, "over_1px": 0}, "bound_honesty": error * 3,
@@ -110,6 +111,29 @@ FRAMES = "frame,wall_ms,triangles,pixel_p999_px,popping_p999_px\n"
 
 def frames(count=5, time=10.1):
     return FRAMES + "".join(f"{i},{time + i % 3},{1000 + i},{0.1 if i % 2 == 0 else ''},\n" for i in range(count))
+
+
+def economy(frame, triangles, p999=None, max=None):
+    """A frame that was compared; p999 and max: target_px, minimal_triangles, ratio."""
+    def bound(figures):
+        if figures is None:
+            return None
+        target, minimal, ratio = figures
+        return {"target_px": target, "minimal_triangles": minimal, "greedy_triangles": minimal + 1, "greedy_px": target,
+                "ratio": ratio}
+    return {"frame": frame, "triangles": triangles, "full_triangles": 400000, "p999": bound(p999), "max": bound(max)}
+
+
+def flight(**more):
+    record = {"schema_version": 1, "south_west": [0, 0], "north_east": [1000, 2000], "spacing": [10, 10], "rows": 201,
+              "columns": 101, "min_height": 0, "max_height": 99, "positions": [[100, 100, 50], [900, 1900, 50]],
+              "directions": [[0, 1, 0], [1, 0, 0]]}
+    record.update(more)
+    return record
+
+
+def needed(target, tiles, most):
+    return {"target_px": target, "tiles": tiles, "samples": tiles * 65 * 65, "most_tiles_in_a_frame": most}
 
 
 def searched(method, knob="tau", probes=(), taken=None, outcome="met", monotone=True, failure=None):
@@ -126,7 +150,7 @@ def match(methods, **more):
     return record
 
 
-def write_folder(path, cells, run=None, csv=None, match=None):
+def write_folder(path, cells, run=None, csv=None, match=None, flights=None):
     """A results folder with these cells, which may hold anything."""
     for part in ("frames", "shots", "flights"):
         (path / part).mkdir(parents=True, exist_ok=True)
@@ -135,6 +159,8 @@ def write_folder(path, cells, run=None, csv=None, match=None):
     context.update(run or {})
     (path / "run.json").write_text(json.dumps(context))
     (path / "cells.jsonl").write_text("".join(json.dumps(c) + "\n" for c in cells))
+    for scenario, record in (flights or {}).items():
+        (path / "flights" / f"{scenario}.json").write_text(json.dumps(record))
     if match is not None:
         (path / "match.json").write_text(json.dumps(match))
     for record in cells:

@@ -17,7 +17,8 @@ import sys
 import tempfile
 import unittest
 
-from report_page import (FRAMES, Page, cell, frames, match, png, report, searched, value_of, write_folder)
+from report_page import (FRAMES, Page, cell, economy, flight, frames, match, needed, png, report, searched, value_of,
+                         write_folder)
 
 BINARY = sys.argv.pop(1)
 HOSTILE = ['<script>alert(1)</script>', '"><img src=x onerror=alert(1)>', "</title></style></script><svg onload=alert(1)>",
@@ -202,6 +203,61 @@ class Report(unittest.TestCase):
         self.assertEqual(page.rows("match") + page.rows("equal_accuracy"), [])
         self.assertNotIn("Equal accuracy", text)
 
+    def test_economy_is_what_was_asked_for_beside_what_the_views_needed(self):
+        cells = [cell(f"a{tau}", method="a", params={"tau": tau}, error=tau, samples_served=9_000_000 // tau)
+                 for tau in (1, 2)]
+        cells.append(cell("b", method="b", error=3, samples_served=50_000, samples_prepared=40_000, tiles_served=11))
+        entries = [needed(0.25, 900, 300), needed(0.5, 300, 90), needed(1, 80, 30)]
+        folder = write_folder(self.root / "run", cells, flights={"demo": flight(needed=entries)})
+        page, text = self.make(folder, more=["--csv", self.root / "csv"])
+        for row, record in zip(page.rows("economy"), cells):
+            for field in ("screen_error_px.max_covered", "samples_prepared", "samples_served", "tiles_served",
+                          "terrain_bytes_read", "gpu_bytes"):
+                self.assertEqual(float(row[field][1]), value_of(record, field), field)
+        with open(self.root / "csv" / "needed.csv", newline="") as stream:
+            self.assertEqual([{k: float(v) for k, v in row.items() if k in entries[0]} for row in csv.DictReader(stream)],
+                             entries)
+        plot = next(p for p in page.data()["plots"] if p["id"] == "set1-economy-samples")
+        self.assertTrue(plot["log"])
+        self.assertEqual({s["name"]: [m[:2] for m in s["marks"]] for s in plot["series"]}, {
+            "what the views needed": [[e["target_px"], e["samples"]] for e in entries],
+            "a": [[2.5, 9_000_000], [5, 4_500_000]], "b": [[7.5, 50_000]]})
+        self.assertIn("an upper bound of the least there is", text)
+        self.assertIn("how few triangles would do; `lodbench economy --frame N`", text)
+        self.assertEqual(page.rows("economy_frames"), [])
+
+    def test_economy_compares_the_triangles_of_frames_with_what_would_do(self):
+        first = [economy(50, 9000, (0.5, 3000, 3.0), (4, 1500, 6.0)), economy(10, 8000, (0.25, 1000, 8.0))]
+        second = [economy(50, 9100, (0.5, 3000, 5.0), (4, 1500, 6.0))]
+        cells = [cell("a0", method="a", economy=first), cell("a1", method="a", repetition=1, economy=second),
+                 cell("b0", method="b", economy=[economy(50, 7, (0, 0, None), None), "junk", {"frame": "x"}]),
+                 cell("c0", method="c")]
+        page, text = self.make(write_folder(self.root / "run", cells))
+        rows = {(row["method"][0], row["frame"][0]): {field: value for field, (_, value) in row.items() if value}
+                for row in page.rows("economy_frames")}
+        def fields(frame, triangles, p999, max=None):
+            row = {"frame": frame, "triangles": triangles, "full_triangles": 400000}
+            for key, figures in (("p999", p999), ("max", max)):
+                names = ("target_px", "minimal_triangles", "ratio")
+                row.update({f"{key}.{name}": value for name, value in zip(names, figures or ()) if value is not None})
+            return {key: f"{value:g}" for key, value in row.items()}
+        self.assertEqual(rows, {("a", "10"): fields(10, 8000, (0.25, 1000, 8)),
+                                ("a", "50"): fields(50, 9050, (0.5, 3000, 4), (4, 1500, 6)),
+                                ("b", "50"): fields(50, 7, (0, 0, None))})
+        plot = next(p for p in page.data()["plots"] if p["id"] == "set1-economy-ratio")
+        self.assertEqual([c["label"] for c in plot["categories"]], ["a", "b", "c"])
+        self.assertEqual([m[:2] + m[4:] for m in plot["series"][0]["marks"]], [[6, 0, 4, 8]])
+        self.assertIn("They are an upper bound of the fewest there are", text)
+        self.assertIn("Not measured: what the views needed; flights/demo.json does not say it", text)
+        # An older folder has none of it.
+        old = cell("a")
+        for field in ("economy", "samples_prepared", "tiles_served", "terrain_bytes_read"):
+            del old[field]
+        page, text = self.make(write_folder(self.root / "old", [old], flights={"demo": flight()}))
+        self.assertEqual(page.rows("economy")[0]["samples_prepared"], ["-", ""])
+        self.assertEqual(page.rows("economy")[0]["samples_served"][1], "17")
+        self.assertEqual(page.rows("economy_frames") + page.rows("needed"), [])
+
     def test_nothing_out_of_a_file_becomes_markup_or_script(self):
         reference, _ = self.make(write_folder(self.root / "plain", [
             cell(f"c{i}__r0", method=f"m{i}", scenario=f"s{i}", params={f"p{i}": f"v{i}"},
@@ -294,11 +350,7 @@ class Report(unittest.TestCase):
         self.assertLess(len(text), 5_000_000)
 
     def test_a_flight_is_drawn_over_its_ground(self):
-        folder = write_folder(self.root / "run", [cell("a__r0")])
-        (folder / "flights" / "demo.json").write_text(json.dumps({
-            "schema_version": 1, "south_west": [0, 0], "north_east": [1000, 2000], "spacing": [10, 10], "rows": 201,
-            "columns": 101, "min_height": 0, "max_height": 99, "positions": [[100, 100, 50], [900, 1900, 50]],
-            "directions": [[0, 1, 0], [1, 0, 0]]}))
+        folder = write_folder(self.root / "run", [cell("a__r0")], flights={"demo": flight()})
         (folder / "flights" / "demo__hillshade.png").write_bytes(png(50, 100))
         _, text = self.make(folder)
         self.assertRegex(text, r'<image href="data:image/(webp|png);base64,')
@@ -341,6 +393,9 @@ class Report(unittest.TestCase):
         def searched_as(**more):
             return lambda folder: (folder / "match.json").write_text(json.dumps(match([searched("m")]) | more))
 
+        def flown(**more):
+            return lambda folder: (folder / "flights" / "demo.json").write_text(json.dumps(flight(**more)))
+
         def found(**more):
             return searched_as(methods=[searched("m") | more])
 
@@ -366,6 +421,12 @@ class Report(unittest.TestCase):
             "header": (lambda f: (f / "frames" / "b__r0.csv").write_text("a,b\n1,2\n"), "no column 'frame'"),
             "flight": (lambda f: (f / "flights" / "demo.json").write_text('{"schema_version": 1}'),
                        "demo.json: 'south_west' is missing"),
+            "needed": (flown(needed=7), "demo.json: 'needed' is not a list"),
+            "needed-entry": (flown(needed=[7]), "demo.json: needed: 'target_px' is missing"),
+            "needed-order": (flown(needed=[needed(1, 2, 3), needed(1, 2, 3)]),
+                             "demo.json: needed: 'target_px' is not positive and rising"),
+            "needed-text": (flown(needed=[needed(1, 2, "3")]),
+                            "demo.json: needed: 'most_tiles_in_a_frame' is not a number"),
             "match-json": (lambda f: (f / "match.json").write_text("{"), "match.json: this is not JSON"),
             "match-schema": (searched_as(schema_version=2), "match.json: schema_version is 2, expected 1"),
             "match-quantity": (searched_as(quantity="beauty"), "match.json: 'quantity' is not pixel_error_px"),

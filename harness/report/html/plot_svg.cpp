@@ -23,7 +23,7 @@ constexpr double kDot = 3.2;
 // Bars.
 constexpr double kBarLeft = 150;
 constexpr double kBarRight = 420;  // room for the value behind it
-constexpr std::size_t kLabelLength = 22;
+constexpr std::size_t kLabelLength = 20;
 
 std::string open_svg(const Plot& plot, double height) {
     return fmt::format(

@@ -1,9 +1,6 @@
-// What a method takes before its first frame and while it flies: time, memory, samples.
+// What a method takes before its first frame and while it flies: time and memory.
 
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <set>
 
 #include "report/html/sections.h"
 #include "report/html/text.h"
@@ -57,21 +54,6 @@ Plot resource_plot(const ReportData& data, const ResultSet& set, const Resource&
     return plot;
 }
 
-/// Whatever the cells of the report say of it: the names are the results' own.
-std::set<std::string> economy_names(const ReportData& data) {
-    std::set<std::string> names;
-    for (const ResultFolder& folder : *data.folders) {
-        for (const Json::Value& cell : folder.cells) {
-            const Json::Value& economy = member_of(cell, "economy");
-            if (!economy.isObject()) continue;
-            for (auto member = economy.begin(); member != economy.end(); ++member) {
-                if (member->isNumeric()) names.insert(member.name());
-            }
-        }
-    }
-    return names;
-}
-
 }  // namespace
 
 void add_resources(Page& page, const ReportData& data, const ResultSet& set) {
@@ -94,28 +76,6 @@ void add_resources(Page& page, const ReportData& data, const ResultSet& set) {
         }
     }
     if (!page.plots(plots)) page.not_measured("no cell is ok");
-    page.table(table);
-}
-
-void add_economy(Page& page, const ReportData& data, const ResultSet& set) {
-    page.heading(3, "Economy", set.id + "-economy");
-    const std::set<std::string> names = economy_names(data);
-    Table table = table_of(set, "economy", "What a method asked for, " + set.title);
-    table.columns.push_back({"height samples served", "samples_served", true,
-                             "samples that the method asked the terrain for"});
-    for (const std::string& name : names) {
-        std::string title = name;
-        std::ranges::replace(title, '_', ' ');
-        table.columns.push_back({title, "economy." + name});
-    }
-    for (const CellGroup& group : set.groups) {
-        std::vector<Field>& row = table.rows.emplace_back();
-        row.push_back(text_field(group.label));
-        row.push_back(number_field(figure(group, "samples_served"), 0));
-        for (const std::string& name : names) {
-            row.push_back(number_field(figure(group, "economy", name.c_str()), 3));
-        }
-    }
     page.table(table);
 }
 

@@ -1,0 +1,223 @@
+// Economy: what a method asks of the terrain and of the GPU beside what the views need.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "report/html/sections.h"
+#include "report/html/text.h"
+
+namespace lodbench::report::html {
+
+namespace {
+
+constexpr double kMebibyte = 1048576.0;
+
+struct Figure {
+    const char* title;
+    const char* key;
+    const char* inner;
+    int digits;
+    double unit;
+    const char* explanation;
+};
+
+constexpr Figure kDemands[] = {
+    {"screen error, px", "screen_error_px", "max_covered", 3, 1,
+     "greatest over the samples in view that some triangle covers"},
+    {"samples prepared", "samples_prepared", nullptr, 0, 1,
+     "height samples asked for until preparing had ended"},
+    {"samples served", "samples_served", nullptr, 0, 1,
+     "height samples asked for until the timing replay had ended, those for preparing included"},
+    {"tiles served", "tiles_served", nullptr, 0, 1, "tiles of which they came"},
+    {"read, MiB", "terrain_bytes_read", nullptr, 1, kMebibyte,
+     "from the terrain's file; 0 for a terrain in memory"},
+    {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte, "allocated on the GPU"},
+};
+
+constexpr Figure kFrameFigures[] = {
+    {"triangles", "triangles", nullptr, 0, 1, "drawn, those with an area"},
+    {"full grid", "full_triangles", nullptr, 0, 1, "triangles of every sample in view"},
+    {"P99.9, px", "p999", "target_px", 3, 1, "screen error of the frame"},
+    {"would do", "p999", "minimal_triangles", 0, 1, "triangles, at the same P99.9"},
+    {"ratio", "p999", "ratio", 2, 1, "triangles / would do"},
+    {"max, px", "max", "target_px", 3, 1, "greatest screen error of the frame"},
+    {"would do, max", "max", "minimal_triangles", 0, 1, "triangles, at the same greatest error"},
+    {"ratio, max", "max", "ratio", 2, 1, "triangles / would do, max"},
+};
+
+std::string field_name(const Figure& entry) {
+    return entry.inner == nullptr ? entry.key : fmt::format("{}.{}", entry.key, entry.inner);
+}
+
+template <std::size_t N>
+void add_columns(Table& table, const Figure (&figures)[N]) {
+    for (const Figure& entry : figures) {
+        table.columns.push_back({entry.title, field_name(entry), true, entry.explanation});
+    }
+}
+
+/// The median over `objects` of each figure.
+template <std::size_t N>
+void add_fields(std::vector<Field>& row, const Figure (&figures)[N],
+                const std::vector<const Json::Value*>& objects) {
+    for (const Figure& entry : figures) {
+        row.push_back(number_field(measure::median(numbers_of(objects, entry.key, entry.inner)),
+                                   entry.digits, entry.unit));
+    }
+}
+
+/// By frame, the objects of the repetitions that compared it.
+std::map<int, std::vector<const Json::Value*>> compared_frames(const CellGroup& group) {
+    std::map<int, std::vector<const Json::Value*>> frames;
+    for (const Json::Value* cell : group.good) {
+        const Json::Value& economy = member_of(*cell, "economy");
+        if (!economy.isArray()) continue;
+        for (const Json::Value& object : economy) {
+            const Json::Value& frame = member_of(object, "frame");
+            if (frame.isInt()) frames[frame.asInt()].push_back(&object);
+        }
+    }
+    return frames;
+}
+
+Plot demand_plot(const ReportData& data, const ResultSet& set) {
+    Plot plot;
+    plot.id = set.id + "-economy-samples";
+    plot.title = "Height samples against screen error";
+    plot.x_title = "greatest screen error, px";
+    plot.y_title = "height samples asked for";
+    plot.can_be_logarithmic = plot.logarithmic = true;
+    std::map<std::string, Series> by_method;
+    for (const CellGroup& group : set.groups) {
+        const auto error = figure(group, "screen_error_px", "max_covered");
+        const auto samples = figure(group, "samples_served");
+        if (!error || !samples) continue;
+        Series& series = by_method[group.method];
+        series.name = series.toggle = group.method;
+        series.color = data.color_of(group);
+        series.joined = false;
+        Mark mark{*error, *samples};
+        mark.label = group.label;
+        series.marks.push_back(std::move(mark));
+    }
+    if (by_method.empty()) return plot;
+    if (set.flight != nullptr && !set.flight->needed.empty()) {
+        Series needed{"what the views needed"};
+        needed.ink = true;
+        needed.dots = false;
+        for (const NeededTiles& entry : set.flight->needed) {
+            needed.marks.push_back({entry.target_px, entry.samples});
+        }
+        plot.series.push_back(std::move(needed));
+        plot.notes.push_back("The line: what the views needed.");
+    }
+    for (auto& [method, series] : by_method) plot.series.push_back(std::move(series));
+    return plot;
+}
+
+void add_demand(Page& page, const ReportData& data, const ResultSet& set) {
+    Table table = table_of(set, "economy", "What a method asked for, " + set.title);
+    add_columns(table, kDemands);
+    for (const CellGroup& group : set.groups) {
+        std::vector<Field>& row = table.rows.emplace_back();
+        row.push_back(text_field(group.label));
+        add_fields(row, kDemands, group.good);
+    }
+    page.table(table);
+    if (set.flight == nullptr || set.flight->needed.empty()) {
+        page.not_measured("what the views needed; flights/" + set.scenario +
+                          ".json does not say it (it is of an older lodbench, or not there)");
+    } else {
+        Table needed = table_of(set, "needed", "What the views needed, " + set.title);
+        needed.columns = {{"screen error, px", "target_px", false},
+                          {"samples", "samples"},
+                          {"tiles", "tiles", true, "of all frames together"},
+                          {"most tiles in a frame", "most_tiles_in_a_frame"}};
+        for (const NeededTiles& entry : set.flight->needed) {
+            needed.rows.push_back({{fmt::format("{:g}", entry.target_px), exact(entry.target_px)},
+                                   number_field(entry.samples, 0),
+                                   number_field(entry.tiles, 0),
+                                   number_field(entry.most_tiles_in_a_frame, 0)});
+        }
+        page.table(needed);
+        page.paragraph(
+            "The views needed, of all frames together, the tiles (65 × 65 samples) in view at the "
+            "coarsest level that keeps the error: an upper bound of the least there is, for parts "
+            "of a tile may do with less.",
+            "note");
+    }
+    page.plots({demand_plot(data, set)}, true);
+}
+
+Plot ratio_plot(const ReportData& data, const ResultSet& set) {
+    Plot plot;
+    plot.kind = Plot::Kind::bars;
+    plot.id = set.id + "-economy-ratio";
+    plot.title = "Triangles drawn / would do, at the same P99.9";
+    plot.x_title = "ratio";
+    plot.y_title = "method";
+    plot.can_be_logarithmic = plot.logarithmic = true;
+    plot.reference = 1;
+    const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
+    Series series{"ratio"};
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+        const CellGroup& group = set.groups[chosen[c]];
+        plot.categories.push_back({group.label, group.method, data.color_of(group)});
+        std::vector<double> ratios;
+        for (const auto& [frame, objects] : compared_frames(group)) {
+            const auto ratio = measure::median(numbers_of(objects, "p999", "ratio"));
+            if (ratio) ratios.push_back(*ratio);
+        }
+        if (ratios.empty()) continue;
+        const auto [low, high] = std::ranges::minmax(ratios);
+        series.marks.push_back({*measure::median(ratios), double(c), low, high});
+    }
+    plot.series.push_back(std::move(series));
+    plot.notes.push_back(
+        "A bar is the median over the frames compared, its whiskers the least and the greatest of "
+        "them. Dashed: as many triangles as would do.");
+    if (std::string note = left_out_note(set, chosen.size()); !note.empty()) {
+        plot.notes.push_back(std::move(note));
+    }
+    return plot;
+}
+
+void add_compared_frames(Page& page, const ReportData& data, const ResultSet& set) {
+    Table table = table_of(set, "economy_frames", "Triangles and what would do, " + set.title);
+    table.columns.push_back({"frame", "frame"});
+    add_columns(table, kFrameFigures);
+    for (const CellGroup& group : set.groups) {
+        for (const auto& [frame, objects] : compared_frames(group)) {
+            std::vector<Field>& row = table.rows.emplace_back();
+            row.push_back(text_field(group.label));
+            row.push_back(number_field(frame, 0));
+            add_fields(row, kFrameFigures, objects);
+        }
+    }
+    if (table.rows.empty()) {
+        page.not_measured(
+            "how few triangles would do; `lodbench economy --frame N` compares a frame, and so "
+            "does `economy = [50]` under `[measure]` of the scenario");
+        return;
+    }
+    page.table(table);
+    page.paragraph(
+        "Would do: the triangles of a triangulation of the same frame, made by greedy insertion, "
+        "whose measured screen error is the same. They are an upper bound of the fewest there are: "
+        "the ratio to those is no less than the one here.",
+        "note");
+    page.plots({ratio_plot(data, set)}, true);
+}
+
+}  // namespace
+
+void add_economy(Page& page, const ReportData& data, const ResultSet& set) {
+    page.heading(3, "Economy", set.id + "-economy");
+    add_demand(page, data, set);
+    add_compared_frames(page, data, set);
+}
+
+}  // namespace lodbench::report::html
