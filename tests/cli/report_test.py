@@ -311,6 +311,13 @@ class Report(unittest.TestCase):
         self.assertNotIn("@import", outside)
         self.assertNotIn("url(", outside)
 
+    def test_long_labels_of_bars_keep_both_ends(self):
+        _, text = self.make(write_folder(self.root / "run", [
+            cell(f"a{tau}", method="größte-Höhen-zuerst-und-weiter", params={"tau": tau}) for tau in (0.25, 0.5)]
+            + [cell("b", method="exactly-twenty-chars")]))
+        labels = re.findall(r'<text class="end" x="142" [^>]*>([^<]*)<title>', text)
+        self.assertEqual(set(labels), {"größte-Höh… tau=0.25", "größte-Höh…r tau=0.5", "exactly-twenty-chars"})
+
     def test_reads_without_a_script(self):
         page, text = self.make(write_folder(self.root / "run", self.cells()))
         plots = page.data()["plots"]

@@ -152,7 +152,9 @@
 
   const bars = (plot, logarithmic, width) => {
     const longest = width < 480 ? 16 : 30;
-    const shortened = (text) => text.length > longest ? text.slice(0, longest - 1) + '…' : text;
+    // In the middle: settings of one method differ at the end.
+    const head = longest >> 1;
+    const shortened = (text) => text.length > longest ? text.slice(0, head) + '…' + text.slice(head + 1 - longest) : text;
     const finite = plot.series.flatMap((s) => s.marks.flatMap((m) => [m[0], m[5]])).filter((v) => typeof v === 'number');
     if (plot.reference !== undefined) finite.push(plot.reference);
     const most = Math.max(...finite);

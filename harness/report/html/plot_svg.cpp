@@ -142,14 +142,17 @@ std::string curves_svg(const Plot& plot) {
     return svg + "</svg>\n";
 }
 
-/// The first characters of a label that is too long; whole UTF-8 characters.
+/// Both ends of a label that is too long, since settings of one method differ at the end; whole
+/// UTF-8 characters.
 std::string shortened(const std::string& label) {
-    std::size_t characters = 0;
+    std::vector<std::size_t> begins;  // of the characters
     for (std::size_t i = 0; i < label.size(); ++i) {
-        if ((static_cast<unsigned char>(label[i]) & 0xC0) == 0x80) continue;
-        if (++characters == kLabelLength) return label.substr(0, i) + "…";
+        if ((static_cast<unsigned char>(label[i]) & 0xC0) != 0x80) begins.push_back(i);
     }
-    return label;
+    if (begins.size() <= kLabelLength) return label;
+    constexpr std::size_t kHead = kLabelLength / 2;
+    const std::size_t tail = begins[begins.size() + kHead + 1 - kLabelLength];
+    return label.substr(0, begins[kHead]) + "…" + label.substr(tail);
 }
 
 std::string bar_svg(const Mark& mark, const Axis& axis, double top, double thickness, double zero) {
