@@ -152,22 +152,28 @@ SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& came
     return errors;
 }
 
-Popping measure_popping(const ReferenceTerrain& terrain, const Camera& later_camera,
-                        std::span<const float> earlier, std::span<const float> later,
-                        ErrorPool& pool) {
+Popping measure_popping(const ReferenceTerrain& terrain, const DrawnFrame& earlier,
+                        const DrawnFrame& later, ErrorPool& pool) {
     struct Partial {
         Popping popping;
         ErrorSums sums;
     };
-    const PixelProjection pixels(later_camera);
+    const PixelProjection pixels(later.camera);
+    const PixelProjection pixels_before(earlier.camera);
     const glm::dvec3 up = pixels.turned({0, 0, 1});
-    const std::array fields{earlier, later};
+    /// Whether the true or the drawn point was in the earlier view.
+    const auto was_in_view = [&](int row, int column, float displacement) {
+        const glm::dvec3 truth = terrain.sample(row, column);
+        if (pixels_before.in_view(pixels_before.local(truth))) return true;
+        const glm::dvec3 drawn = truth + glm::dvec3(0, 0, double(displacement));
+        return !std::isnan(displacement) && pixels_before.in_view(pixels_before.local(drawn));
+    };
+    const std::array fields{earlier.displacements, later.displacements};
     const auto partials = for_samples<Partial>(
-        terrain, later_camera, fields,
-        [&](Partial& partial, int /*row*/, int /*column*/, std::size_t index,
-            const glm::dvec3& truth) {
-            const float before = earlier[index];
-            const float after = later[index];
+        terrain, later.camera, fields,
+        [&](Partial& partial, int row, int column, std::size_t index, const glm::dvec3& truth) {
+            const float before = earlier.displacements[index];
+            const float after = later.displacements[index];
             const glm::dvec3 drawn = truth + up * double(after);
             const bool now_in_view =
                 pixels.in_view(truth) || (!std::isnan(after) && pixels.in_view(drawn));
@@ -176,13 +182,15 @@ Popping measure_popping(const ReferenceTerrain& terrain, const Camera& later_cam
                 partial.popping.heights.sum_of_squares += double(after) * after;
             }
             if (std::isnan(before) || std::isnan(after)) {
-                if (std::isnan(before) != std::isnan(after) && now_in_view) {
+                if (std::isnan(before) != std::isnan(after) && now_in_view &&
+                    was_in_view(row, column, before)) {
                     ++partial.popping.covered_once;
                 }
                 return;
             }
             const glm::dvec3 drawn_before = truth + up * double(before);
             if (!pixels.in_view(drawn) && !pixels.in_view(drawn_before)) return;
+            if (!was_in_view(row, column, before)) return;
             const double px = pixels.distance(drawn_before, drawn).px;
             pool.tally(px);
             partial.sums.add(px, 1.0);

@@ -48,16 +48,22 @@ struct SampleErrors {
 /// What popped between two frames.
 struct Popping {
     std::uint64_t over_1px = 0;
-    std::uint64_t covered_once = 0;  ///< samples in view that only one of the two frames covers
+    std::uint64_t covered_once = 0;  ///< samples in both views that only one of the frames covers
     HeightSums heights;              ///< of the later frame
 };
 
+/// What a frame drew, and from where.
+struct DrawnFrame {
+    const Camera& camera;
+    std::span<const float> displacements;  ///< as DrawnSurface gives them
+};
+
 /// Popping: |pi'(x, y, l_f) - pi'(x, y, l_f+1)| in pixels, pi' the later frame's projection, at the
-/// samples that both frames cover and of which one drawn point lies in the later frustum. The
+/// samples that both frames cover, of which one drawn point lies in the later frustum, and which
+/// the earlier frame had in view: what a turn of the camera brings in was not seen to pop. The
 /// camera's own motion gives zero.
-[[nodiscard]] Popping measure_popping(const ReferenceTerrain& terrain, const Camera& later_camera,
-                                      std::span<const float> earlier, std::span<const float> later,
-                                      ErrorPool& pool);
+[[nodiscard]] Popping measure_popping(const ReferenceTerrain& terrain, const DrawnFrame& earlier,
+                                      const DrawnFrame& later, ErrorPool& pool);
 
 /// The greatest screen error in each cell of a grid of map_rows x map_columns over the terrain, row
 /// 0 the north: NaN where no sample is in view, +infinity where one is uncovered. For pictures.

@@ -72,8 +72,8 @@ void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface
     if (!before_.measured || before_.frame + 1 != frame) return;
 
     frame_popping_.clear();
-    const Popping popping = measure_popping(terrain_, camera, before_.displacements,
-                                            now_.displacements, frame_popping_);
+    const Popping popping = measure_popping(terrain_, {before_.camera, before_.displacements},
+                                            {now_.camera, now_.displacements}, frame_popping_);
     const ErrorSummary summary = frame_popping_.summary(false);
     popping_.add(frame_popping_);
     ++popping_frames_;

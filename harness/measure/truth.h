@@ -74,7 +74,8 @@ struct TruthSummary {
     std::uint64_t clipped = 0;   ///< segments from true to drawn points cut at near depth
     std::uint64_t unjudged = 0;  ///< pixels whose ray starts below l_f: cracks cannot be told there
     std::uint64_t pixels = 0;    ///< of all measured frames
-    std::uint64_t walls = 0;     ///< upright triangles above l_f, in no metric; greatest of a frame
+    std::uint64_t walls =
+        0;  ///< upright triangles above l_f, in no screen error; greatest of a frame
     double silhouette_max = 0, silhouette_mean = 0;
     std::uint64_t silhouette_pixels = 0;
     std::optional<ErrorSummary> popping;  ///< absent where no frame had a successor

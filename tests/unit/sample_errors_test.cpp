@@ -184,7 +184,7 @@ TEST(Popping, is_counted_where_it_is_in_view_and_both_frames_cover) {
     }
     ASSERT_LT(in_view, kSamples / 2);
     const auto popping = [&](ErrorPool& pool) {
-        return measure_popping(ground.terrain(), camera, earlier, later, pool);
+        return measure_popping(ground.terrain(), {camera, earlier}, {camera, later}, pool);
     };
     ErrorPool covered;
     const Popping found = popping(covered);
@@ -201,6 +201,42 @@ TEST(Popping, is_counted_where_it_is_in_view_and_both_frames_cover) {
     EXPECT_EQ(popping(holes).covered_once, 2U);
     EXPECT_EQ(holes.summary(false).count, in_view - 3);
     EXPECT_EQ(holes.summary(false).uncovered, 0U);
+}
+
+TEST(Popping, is_not_seen_at_what_the_camera_only_turns_to) {
+    const Ground ground = ground_of([](int, int) { return 0; });
+    const Camera east = looking_east({320, 320, 20});
+    Camera turned = east;
+    turned.orientation = Camera::look({0.9, 0.5, 0});
+    std::vector<float> earlier(kSamples, 0.0F);
+    const std::vector<float> later(kSamples, 0.0F);
+    // Half of what the later camera sees was out of view before: there the earlier frame was
+    // coarse.
+    std::uint64_t in_both = 0, entered = 0;
+    for (int row = 0; row < kSide; ++row) {
+        for (int column = 0; column < kSide; ++column) {
+            if (!in_frustum(turned, ground.point(column, row, 0))) continue;
+            if (in_frustum(east, ground.point(column, row, 0))) {
+                ++in_both;
+                continue;
+            }
+            ++entered;
+            earlier[index_of(row, column)] = entered % 2 == 0 ? kNaN : 0.01F;
+        }
+    }
+    ASSERT_GT(in_both, 100U);
+    ASSERT_GT(entered, 100U);
+    ErrorPool pool;
+    const Popping found = measure_popping(ground.terrain(), {east, earlier}, {turned, later}, pool);
+    EXPECT_EQ(pool.summary(false).count, in_both);
+    EXPECT_EQ(pool.summary(false).max, 0.0);
+    EXPECT_EQ(found.covered_once, 0U);
+    // The camera that had it in view sees it pop.
+    ErrorPool seen;
+    EXPECT_GT(
+        measure_popping(ground.terrain(), {turned, earlier}, {turned, later}, seen).covered_once,
+        entered / 3);
+    EXPECT_GT(*seen.summary(false).max, 0);
 }
 
 TEST(MapOfErrors, holds_the_greatest_of_each_cell_and_where_none_is_in_view_nothing) {
