@@ -67,6 +67,28 @@ class Shown(unittest.TestCase):
         self.assertEqual(types, ["linear", "logarithmic"])
         self.assertEqual(ticks, [0, 1, 2])
 
+    def test_bars_leave_room_for_what_is_written_behind_their_whiskers(self):
+        self.browser.open(self.url, 1440, "light")
+        ends = self.browser.evaluate(
+            "Object.values(Chart.instances).filter((c) => c.config.type === 'bar' && c.scales.x.type === 'linear')"
+            ".map((c) => [c.scales.x.max, Math.max(...c.data.datasets.flatMap((d) => d.marks.map((m) => m[5] || m[0])))])")
+        self.assertGreater(len(ends), 3)
+        for end, most in ends:
+            self.assertGreater(end, 1.1 * most)
+
+    def test_all_methods_may_be_hidden_and_shown_again(self):
+        self.browser.open(self.url, 1440, "light")
+        before = self.browser.evaluate(VISIBLE)
+        press_all = "document.querySelectorAll('[data-toggle]').forEach((box) => box.click())"
+        log_all = "document.querySelectorAll('[data-log]').forEach((box) => box.click())"
+        self.browser.evaluate(press_all)
+        self.assertEqual(self.browser.evaluate(VISIBLE), 0)
+        self.browser.evaluate(log_all)
+        self.browser.evaluate(press_all)
+        self.browser.evaluate(log_all)
+        self.assertEqual(self.browser.evaluate(VISIBLE), before)
+        self.check_silence()
+
     def test_keyboard_alone_hides_a_method_and_turns_an_axis(self):
         self.browser.open(self.url, 1440, "light")
         before = self.browser.evaluate(VISIBLE)

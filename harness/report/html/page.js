@@ -14,9 +14,11 @@
   const theme = () => {
     const style = getComputedStyle(root);
     const color = (name) => style.getPropertyValue(name).trim();
+    const series = [];
+    while (color('--c' + series.length) !== '') series.push(color('--c' + series.length));
     return {
       ink: color('--ink'), soft: color('--soft'), grid: color('--grid'), panel: color('--panel'),
-      series: Array.from({length: 8}, (_, i) => color('--c' + i)),
+      series,
     };
   };
   let colors = theme();
@@ -155,11 +157,12 @@
     // In the middle: settings of one method differ at the end.
     const head = longest >> 1;
     const shortened = (text) => text.length > longest ? text.slice(0, head) + '…' + text.slice(head + 1 - longest) : text;
-    const finite = plot.series.flatMap((s) => s.marks.flatMap((m) => [m[0], m[5]])).filter((v) => typeof v === 'number');
-    if (plot.reference !== undefined) finite.push(plot.reference);
-    const most = Math.max(...finite);
-    const least = Math.min(...finite.filter((v) => v > 0));
     const shown = plot.categories.map((category) => !isHidden(plot, category.toggle));
+    const finite = plot.series.flatMap((s) => s.marks.filter((m) => shown[m[1]]).flatMap((m) => [m[0], m[5]]))
+        .filter((v) => typeof v === 'number');
+    if (plot.reference !== undefined) finite.push(plot.reference);
+    const most = Math.max(0, ...finite) || 1;  // none is left where all are hidden
+    const least = Math.min(most, ...finite.filter((v) => v > 0));
     return {
       type: 'bar',
       data: {
@@ -178,7 +181,7 @@
       options: options({
         indexAxis: 'y',
         scales: {
-          x: scale(plot.x, logarithmic, logarithmic ? {min: least / 2, max: most * 4} : {beginAtZero: true, grace: '12%'}),
+          x: scale(plot.x, logarithmic, logarithmic ? {min: least / 2, max: most * 4} : {beginAtZero: true, suggestedMax: most * 1.16}),
           y: {grid: {display: false}, ticks: {color: colors.ink, font: {size: 12}, autoSkip: false}},
         },
         plugins: {

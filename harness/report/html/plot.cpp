@@ -12,7 +12,6 @@ namespace lodbench::report::html {
 
 namespace {
 
-constexpr std::size_t kColors = 8;
 constexpr std::size_t kDashes = 4;
 
 /// JSON has no infinity and no NaN.

@@ -23,6 +23,8 @@ struct Mark {
     bool ringed = false;     ///< on the Pareto front, or what was taken
 };
 
+inline constexpr std::size_t kColors = 12;  ///< of the page's style: --c0, --c1, ...
+
 /// What has one colour and one dash. Colours and dashes repeat where there are more than the page
 /// has.
 struct Series {

@@ -111,7 +111,7 @@ std::string series_svg(const Series& series, const Axis& x, const Axis& y) {
                 mark.label.empty()
                     ? std::string()
                     : fmt::format("{}: {}, {}", mark.label, tick_text(mark.x), tick_text(mark.y));
-            dots += dot(left, top, series.color / 8, title);
+            dots += dot(left, top, series.color / kColors, title);
         }
     }
     std::string svg = fmt::format("<g class=\"{} d{}\">", classes(series), series.variant % 4);
