@@ -104,7 +104,7 @@ private:
     void narrow(Place one, Place other) {
         int moved = 0;  // which end the last probe replaced: 1 or 2
         bool again = false;
-        while (true) {
+        while (!are_close(one, other)) {
             // The slope's guess, but never so near an end that the other hardly moves; where one
             // end has moved twice in a row, as at a jump, the middle.
             const double guess = again ? 0.5 : one.y / (one.y - other.y);
@@ -115,21 +115,22 @@ private:
             const double middle = knob_at(0.5 * (one.x + other.x));
             const bool all_known =
                 std::ranges::find(result_.probes, middle, &Probe::knob) != result_.probes.end();
-            if (known && all_known) {
-                result_.outcome = SearchOutcome::between;
-                return;
-            }
+            if (known && all_known) break;
             const std::optional<Place> next = probe(known ? middle : knob);
             if (met()) return;
-            if (!next) {
-                result_.outcome = SearchOutcome::between;
-                return;
-            }
+            if (!next) break;
             const int end = (next->y > 0) == (one.y > 0) ? 1 : 2;
             (end == 1 ? one : other) = *next;
             again = end == moved;
             moved = end;
         }
+        result_.outcome = SearchOutcome::between;
+    }
+
+    /// Nothing between them is another value for whom the tolerance will do.
+    [[nodiscard]] bool are_close(const Place& one, const Place& other) const {
+        const double a = knob_at(one.x), b = knob_at(other.x);
+        return std::abs(a - b) <= 0.1 * tolerance_ * std::max(std::abs(a), std::abs(b));
     }
 
     [[nodiscard]] bool is_monotone() const {

@@ -41,8 +41,9 @@ struct Probe {
 enum class SearchOutcome {
     met,          ///< within the tolerance
     unreachable,  ///< beyond what the knob's range (or the last value that could be flown) gives
-    between,  ///< probes lie on both sides, none within the tolerance: neighbouring values of the
-              ///< knob, a jump, a cell that failed, or no probe left
+    between,  ///< probes lie on both sides, none within the tolerance: a jump between values of the
+              ///< knob that lie within a tenth of the tolerance or are neighbours, a cell that
+              ///< failed, or no probe left
 };
 [[nodiscard]] const char* name_of(SearchOutcome outcome);
 

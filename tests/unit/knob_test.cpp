@@ -117,8 +117,11 @@ TEST(KnobSearch, closes_in_on_a_jump_by_halves) {
     const auto result = searched(
         kTau, 1, [](double tau) { return tau < 66.27 ? 0.8 : 1.14; }, 40);
     EXPECT_EQ(result.outcome, SearchOutcome::between);
-    EXPECT_NEAR(result.best->knob, 66.27, 0.1);
-    EXPECT_LE(result.probes.size(), 24U);
+    EXPECT_NEAR(result.best->knob, 66.27, 0.005 * 66.27);
+    EXPECT_LE(result.probes.size(), 16U);
+    const auto finer =
+        search_knob(kTau, 1, 0.002, 40, [](double tau) { return tau < 66.27 ? 0.8 : 1.14; });
+    EXPECT_NEAR(finer.best->knob, 66.27, 0.0002 * 66.27 + 0.01);
 }
 
 TEST(KnobSearch, infinite_and_zero_values_are_far_away_not_lost) {
