@@ -59,6 +59,20 @@ std::string read_all(const FileDescriptor& file) {
     }
 }
 
+void read_exactly(const FileDescriptor& file, off_t offset, void* bytes, std::size_t size) {
+    for (auto* at = static_cast<char*>(bytes); size > 0;) {
+        const ssize_t count = pread(file.number(), at, size, offset);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) {
+            throw EnvironmentError(fmt::format("a file in memory cannot be read: {}",
+                                               count < 0 ? std::strerror(errno) : "it ends early"));
+        }
+        at += count;
+        offset += count;
+        size -= std::size_t(count);
+    }
+}
+
 bool write_all(int descriptor, std::string_view text) {
     while (!text.empty()) {
         const ssize_t count = ::write(descriptor, text.data(), text.size());

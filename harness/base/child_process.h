@@ -30,6 +30,9 @@ private:
 [[nodiscard]] FileDescriptor memory_file(const char* label);
 /// All of a file, read from its start; the descriptor's position is not used.
 [[nodiscard]] std::string read_all(const FileDescriptor& file);
+/// Reads so many bytes from `offset` on. Throws EnvironmentError where the system refuses or the
+/// file ends before.
+void read_exactly(const FileDescriptor& file, off_t offset, void* bytes, std::size_t size);
 /// Writes all of `text`; false when the system refuses.
 bool write_all(int descriptor, std::string_view text);
 

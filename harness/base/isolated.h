@@ -19,6 +19,7 @@ enum class Ending {
 struct Answer {
     Ending ending = Ending::died;
     std::string text;
+    int signal = 0;  ///< that ended the child where it died of one
 };
 
 /// Runs `work` in a forked child for at most `seconds` and returns what it answered. Must be called

@@ -51,7 +51,7 @@ void ErrorPool::tally(double error) {
             fmt::format("ErrorPool: an error of {} px, expected at least 0", error));
     }
     if (std::isinf(error)) return;  // summed, and above every bucket
-    if (error < std::ldexp(1.0, kLeastExponent)) {
+    if (error < kLeastError) {
         zeros_.fetch_add(1, std::memory_order_relaxed);
         return;
     }

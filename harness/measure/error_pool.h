@@ -53,6 +53,8 @@ struct ErrorSummary {
 
 class ErrorPool {
 public:
+    static constexpr double kLeastError = 0x1p-24;  ///< pixels; what is less counts as 0
+
     ErrorPool();
 
     /// Counts one error in the histogram. Thread-safe. Throws ContractError for NaN or a negative

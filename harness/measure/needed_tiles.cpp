@@ -68,9 +68,10 @@ private:
 NeededTiles::NeededTiles(const Terrain& terrain, const std::vector<double>& targets_px)
     : terrain_(terrain), pyramid_(terrain.tiles()), lacking_(pyramid_.count()) {
     for (const double target : targets_px) {
-        if (!(target > 0)) {
-            throw ContractError(
-                fmt::format("NeededTiles: a target of {} px, expected more than 0", target));
+        const double least = unions_.empty() ? 0 : unions_.back().need.target_px;
+        if (!(target > least)) {
+            throw ContractError(fmt::format("NeededTiles: a target of {} px, expected more than {}",
+                                            target, least));
         }
         unions_.push_back({{target}, std::vector<bool>(pyramid_.count())});
     }
@@ -122,7 +123,12 @@ void NeededTiles::add(const Camera& camera) {
 
 std::vector<TileNeed> NeededTiles::needs() const {
     std::vector<TileNeed> needs;
-    for (const Union& all : unions_) needs.push_back(all.need);
+    for (const Union& all : unions_) {
+        TileNeed need = all.need;
+        if (!needs.empty() && needs.back().tiles < need.tiles) need = needs.back();
+        need.target_px = all.need.target_px;
+        needs.push_back(need);
+    }
     return needs;
 }
 

@@ -29,7 +29,7 @@ struct TileNeed {
 /// the near plane's. So each tile keeps the target, by an upper bound; fewer may do.
 class NeededTiles {
 public:
-    /// `targets_px`: each > 0. The terrain must outlive it.
+    /// `targets_px`: positive and rising. The terrain must outlive it.
     NeededTiles(const Terrain& terrain, const std::vector<double>& targets_px);
 
     void add(const Camera& camera);
@@ -37,6 +37,8 @@ public:
     void visit_needed(const Camera& camera, double target_px,
                       const std::function<void(const TileId&)>& visit) const;
 
+    /// Of each target. Frames that need different levels make some unions larger than those of a
+    /// finer target, which keep the coarser one too: then theirs is the need.
     [[nodiscard]] std::vector<TileNeed> needs() const;
 
 private:

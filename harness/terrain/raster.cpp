@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <json/reader.h>
 #include <json/writer.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <memory>
-#include <new>
 
 #include "api/error.h"
 #include "base/child_process.h"
@@ -23,8 +23,8 @@
 namespace lodbench::terrain {
 namespace {
 
-constexpr double kDay = 86400;  // slow disks are waited for
-constexpr std::size_t kChunk = std::size_t{16} << 20U;
+constexpr double kDay = 86400;                         // slow disks are waited for
+constexpr std::size_t kChunk = std::size_t{4} << 20U;  // heights
 
 /// Gives each row to `take`, and what is known of the raster back, but for its heights.
 Raster read_rows(const TerrainSource& source, const auto& begin, const auto& take) {
@@ -55,15 +55,23 @@ Raster read_here(const TerrainSource& source) {
     return raster;
 }
 
+// JSON has no numbers that are not finite: a file's nonsense is to be told where it is looked at.
+Json::Value bits_of(double value) {
+    return Json::UInt64(std::bit_cast<std::uint64_t>(value));
+}
+double number_of(const Json::Value& bits) {
+    return std::bit_cast<double>(std::uint64_t(bits.asUInt64()));
+}
+
 std::string write_description(const Raster& raster) {
     Json::Value json;
     json["name"] = raster.info.name;
     json["rows"] = raster.info.rows;
     json["columns"] = raster.info.columns;
-    json["spacing_x"] = raster.info.spacing.x;
-    json["spacing_y"] = raster.info.spacing.y;
-    json["origin_x"] = raster.info.origin.x;
-    json["origin_y"] = raster.info.origin.y;
+    json["spacing_x"] = bits_of(raster.info.spacing.x);
+    json["spacing_y"] = bits_of(raster.info.spacing.y);
+    json["origin_x"] = bits_of(raster.info.origin.x);
+    json["origin_y"] = bits_of(raster.info.origin.y);
     json["void_count"] = Json::UInt64(raster.info.void_count);
     json["kind"] = raster.kind;
     json["spacing_assumed"] = raster.spacing_assumed;
@@ -83,8 +91,8 @@ Raster read_description(const std::string& text) {
     raster.info.name = json["name"].asString();
     raster.info.rows = json["rows"].asInt();
     raster.info.columns = json["columns"].asInt();
-    raster.info.spacing = {json["spacing_x"].asDouble(), json["spacing_y"].asDouble()};
-    raster.info.origin = {json["origin_x"].asDouble(), json["origin_y"].asDouble()};
+    raster.info.spacing = {number_of(json["spacing_x"]), number_of(json["spacing_y"])};
+    raster.info.origin = {number_of(json["origin_x"]), number_of(json["origin_y"])};
     raster.info.void_count = json["void_count"].asUInt64();
     raster.kind = json["kind"].asString();
     raster.spacing_assumed = json["spacing_assumed"].asBool();
@@ -92,54 +100,59 @@ Raster read_description(const std::string& text) {
     return raster;
 }
 
-/// Takes the file's content out of it piece by piece: there is never room for two of it.
-void move_out(const base::FileDescriptor& file, std::vector<float>& heights) {
-    const std::size_t size = heights.size() * sizeof(float);
-    auto* const bytes = reinterpret_cast<char*>(heights.data());
-    for (std::size_t at = 0; at < size;) {
-        const std::size_t wanted = std::min(kChunk, size - at);
-        const ssize_t count = pread(file.number(), bytes + at, wanted, off_t(at));
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) {
-            throw EnvironmentError(fmt::format("a raster's heights cannot be read from memory: {}",
-                                               count < 0 ? std::strerror(errno) : "they end"));
-        }
+/// Takes `count` heights out of the file piece by piece: there may be no room for two of it.
+std::vector<float> move_out(const base::FileDescriptor& file, std::size_t count) {
+    std::vector<float> heights;
+    heights.reserve(count);  // touched as they come
+    while (heights.size() < count) {
+        const std::size_t begin = heights.size();
+        heights.resize(std::min(count, begin + kChunk));
+        const auto offset = off_t(begin * sizeof(float));
+        const std::size_t size = (heights.size() - begin) * sizeof(float);
+        base::read_exactly(file, offset, &heights[begin], size);
         // Where this is refused the memory is given back a little later.
-        (void)fallocate(file.number(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, off_t(at),
-                        off_t(count));
-        at += std::size_t(count);
+        (void)fallocate(file.number(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, offset,
+                        off_t(size));
     }
+    return heights;
 }
 
 Raster read_isolated(const TerrainSource& source) {
+    const std::string name = source.file.string();
     const base::FileDescriptor file = base::memory_file("lodbench: heights");
     const base::Answer answer = base::run_isolated(kDay, [&] {
-        try {
-            return write_description(read_rows(
-                source, [](const TerrainInfo&) {},
-                [&](const std::vector<float>& row) {
-                    const std::string_view bytes(reinterpret_cast<const char*>(row.data()),
-                                                 row.size() * sizeof(float));
-                    if (!base::write_all(file.number(), bytes)) throw std::bad_alloc();
-                }));
-        } catch (const std::bad_alloc&) {
-            throw EnvironmentError(
-                fmt::format("{}: not enough memory to hold it", source.file.string()));
-        }
+        std::signal(SIGXFSZ, SIG_IGN);  // a limit of files' sizes holds for memory too: in words
+        return write_description(read_rows(
+            source, [](const TerrainInfo&) {},
+            [&](const std::vector<float>& row) {
+                const std::string_view bytes(reinterpret_cast<const char*>(row.data()),
+                                             row.size() * sizeof(float));
+                if (base::write_all(file.number(), bytes)) return;
+                throw EnvironmentError(fmt::format("{}: its heights cannot be held in memory: {}",
+                                                   name, std::strerror(errno)));
+            }));
     });
     switch (answer.ending) {
         case base::Ending::answered: break;
         case base::Ending::refused: throw InputError(answer.text);
         case base::Ending::no_means: throw EnvironmentError(answer.text);
         case base::Ending::threw:
+            throw InputError(fmt::format("{}: reading it failed: {}; the file may be damaged", name,
+                                         answer.text));
         case base::Ending::died:
+            if (answer.signal != SIGKILL) {
+                throw InputError(
+                    fmt::format("{}: the process that reads it {}; the file may be damaged", name,
+                                answer.text));
+            }
+            [[fallthrough]];
         case base::Ending::timed_out:
-            throw InputError(fmt::format("{}: what reads it {}; the file may be damaged",
-                                         source.file.string(), answer.text));
+            throw EnvironmentError(fmt::format(
+                "{}: the process that reads it {}; is there memory enough?", name, answer.text));
     }
     Raster raster = read_description(answer.text);
-    raster.heights.resize(std::size_t(raster.info.rows) * std::size_t(raster.info.columns));
-    move_out(file, raster.heights);
+    raster.heights =
+        move_out(file, std::size_t(raster.info.rows) * std::size_t(raster.info.columns));
     return raster;
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -176,12 +177,40 @@ TEST(NeededTiles, of_a_flight_are_counted_once_each) {
     EXPECT_LT(both.most_in_a_frame, both.tiles);
 }
 
+TEST(NeededTiles, of_a_coarser_target_are_no_more_than_those_of_a_finer_one) {
+    const auto field = ridged(257, 257);
+    const std::vector<double> targets = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+    NeededTiles needed(*field, targets);
+    std::vector<std::vector<bool>> alone(targets.size());  // unions as they are
+    const TilePyramid pyramid = field->tiles();
+    for (std::vector<bool>& held : alone) held.resize(pyramid.count());
+    for (const double back : {0.0, 500.0, 2000.0, 5000.0}) {
+        Camera camera = camera_over(field->info(), 30, -20, 20);
+        camera.position -= back * camera.forward();
+        needed.add(camera);
+        for (std::size_t i = 0; i < targets.size(); ++i) {
+            needed.visit_needed(camera, targets[i],
+                                [&](const TileId& tile) { alone[i][pyramid.index(tile)] = true; });
+        }
+    }
+    const std::vector<TileNeed> needs = needed.needs();
+    bool differs = false;
+    for (std::size_t i = 0; i < needs.size(); ++i) {
+        EXPECT_EQ(needs[i].target_px, targets[i]);
+        const auto own = std::uint64_t(std::ranges::count(alone[i], true));
+        EXPECT_EQ(needs[i].tiles, std::min(own, i == 0 ? own : needs[i - 1].tiles));
+        differs = differs || needs[i].tiles != own;
+    }
+    EXPECT_TRUE(differs) << "the flight does not try it";
+}
+
 TEST(NeededTiles, are_none_where_nothing_is_in_view_and_a_target_must_be_one) {
     const auto field = ridged(257, 257);
     NeededTiles needed(*field, {1.0});
     needed.add(camera_over(field->info(), 0, 80, 100));
     EXPECT_EQ(needed.needs().front().tiles, 0U);
     EXPECT_THROW(NeededTiles(*field, {0.0}), ContractError);
+    EXPECT_THROW(NeededTiles(*field, {1.0, 1.0}), ContractError);
     EXPECT_THROW(NeededTiles(*field, {std::nan("")}), ContractError);
 }
 

@@ -2,8 +2,10 @@
 
 #include "terrain/raster.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <bit>
 #include <cmath>
@@ -108,6 +110,30 @@ TEST_F(RasterFile, that_is_damaged_is_refused_in_the_same_words) {
 }
 #endif
 
+TEST_F(RasterFile, that_the_memory_is_refused_is_not_put_down_to_the_file) {
+#ifdef LODBENCH_WITH_OIIO
+    const int side = 120;
+    const std::vector<std::string> rows(side, std::string(2 * side, '\1'));
+    TerrainSource source;
+    source.file = folder_.write("a.png", test::png(side, side, 16, 0, rows));
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit little{4096, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &little);
+    const bool apart = base::loaded_modules().empty();
+    try {
+        (void)read_raster(source);
+        EXPECT_FALSE(apart) << "no limit was met";
+    } catch (const EnvironmentError& error) {
+        EXPECT_THAT(error.what(),
+                    HasSubstr("a.png: its heights cannot be held in memory: File too"));
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+#else
+    GTEST_SKIP() << "built without OpenImageIO";
+#endif
+}
+
 #ifdef LODBENCH_WITH_GDAL
 TEST_F(RasterFile, of_elevations_leaves_no_library_behind) {
     TerrainSource source;
@@ -117,6 +143,18 @@ TEST_F(RasterFile, of_elevations_leaves_no_library_behind) {
     expect_the_same_apart_and_here(
         source, "libgdal", [] { EXPECT_THROW((void)open_with_gdal("none.asc"), InputError); });
     EXPECT_TRUE(std::isnan(read_raster(source).heights[4]));
+}
+
+TEST_F(RasterFile, of_a_place_that_is_none_is_refused_where_it_is_looked_at) {
+    for (const char* corner : {"nan", "inf"}) {
+        TerrainSource source;
+        source.file = folder_.write(
+            "n.asc", fmt::format("ncols 3\nnrows 2\nxllcorner {}\nyllcorner 200\ncellsize 30\n"
+                                 "1 2 3\n4 5 6\n",
+                                 corner));
+        EXPECT_FALSE(std::isfinite(read_raster(source).info.origin.x)) << corner;
+        EXPECT_THROW((void)load_terrain(source), InputError) << corner;
+    }
 }
 
 TEST_F(RasterFile, of_more_than_comes_at_once_comes_whole) {
