@@ -47,6 +47,10 @@ std::string economy_text(const std::vector<Json::Value>& cells) {
             failures += fmt::format("- {}, {}: {}\n", group.label, group.scenario, failure);
         }
         for (const Json::Value* cell : group.good) {
+            if ((*cell)["economy"].empty()) {
+                failures += fmt::format("- {}, {}: no sample in view is covered in these frames\n",
+                                        group.label, group.scenario);
+            }
             for (const Json::Value& frame : (*cell)["economy"]) {
                 std::vector<std::string> line = {
                     group.label, fmt::format("{}", frame["frame"].asInt()),
@@ -74,6 +78,7 @@ std::string economy_text(const std::vector<Json::Value>& cells) {
 int economy(Options& options) {
     run::RunRequest& request = options.request;
     request.overrides.economy = options.frames;
+    request.overrides.truth = true;
     if (!request.overrides.repetitions) request.overrides.repetitions = 1;
     options.finish();
     Progress progress;

@@ -99,6 +99,7 @@ int sweep(Options& options) {
     const report::ErrorMetric metric = read_metric(options.metric);
     std::map<std::string, std::string> knobs;
     spread_knobs(options, find_plugins(options.request.plugin_dirs), knobs);
+    options.request.overrides.truth = true;
     options.finish();
     Progress progress;
     const run::CampaignOutcome outcome =

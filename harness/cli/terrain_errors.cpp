@@ -95,8 +95,8 @@ void add_terrain_errors(CLI::App& parent) {
     CLI::App& command = *parent.add_subcommand("errors",
                                                "Writes the error and the nested radius of each "
                                                "sample, as longest-edge bisection has them");
-    auto* file =
-        command.add_option("FILE", options->source.file, "Elevation model, image, raw file or tiled store");
+    auto* file = command.add_option("FILE", options->source.file,
+                                    "Elevation model, image, raw file or tiled store");
     auto* form = command.add_option("--synthetic", options->source.synthetic, "A synthetic form");
     file->excludes(form);
     command

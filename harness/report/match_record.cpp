@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "report/cell_groups.h"
 #include "report/json.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr const char* kQuantities[] = {"pixel_error_px", "triangles", "frame_ms"};
 constexpr const char* kMean = "mean";
+constexpr std::string_view kOutcomes[] = {"met", "unreachable", "between"};
 
 template <typename Value>
 Json::Value or_null(const std::optional<Value>& value) {
@@ -52,10 +54,11 @@ std::optional<std::string> text_or_null(const Json::Value& object, const char* k
 }
 
 MatchRecord::Probe read_probe(const Json::Value& json, const std::string& where) {
-    const bool good = json.isArray() && json.size() == 2 && json[0].isNumeric() &&
-                      (json[1].isNull() || read_number_or_inf(json[1]));
-    expect_field(good, where, "probes", "a list of knob value and measured value");
-    return {json[0].asDouble(), read_number_or_inf(json[1])};
+    const bool pair = json.isArray() && json.size() == 2 && json[0].isNumeric();
+    const auto value = pair ? read_number_or_inf(json[1]) : std::nullopt;
+    expect_field(pair && (json[1].isNull() || (value && *value >= 0)), where, "probes",
+                 "a list of knob value and measured value");
+    return {json[0].asDouble(), value};
 }
 
 MatchRecord::Method read_method(const Json::Value& json, const std::string& file) {
@@ -64,6 +67,8 @@ MatchRecord::Method read_method(const Json::Value& json, const std::string& file
     const std::string where = fmt::format("{}: method '{}'", file, method.method);
     method.knob = text_or_null(json, "knob", where);
     method.outcome = text_or_null(json, "outcome", where);
+    expect_field(!method.outcome || std::ranges::count(kOutcomes, *method.outcome) > 0, where,
+                 "outcome", "met, unreachable, between or null");
     method.failure = text_or_null(json, "failure", where);
     const Json::Value& knob_value = json["knob_value"];
     expect_field(knob_value.isNull() || knob_value.isNumeric(), where, "knob_value",
@@ -71,8 +76,8 @@ MatchRecord::Method read_method(const Json::Value& json, const std::string& file
     if (knob_value.isNumeric()) method.knob_value = knob_value.asDouble();
     const Json::Value& achieved = json["achieved"];
     method.achieved = read_number_or_inf(achieved);
-    expect_field(achieved.isNull() || method.achieved, where, "achieved",
-                 "a number, \"inf\" or null");
+    expect_field(achieved.isNull() || (method.achieved && *method.achieved >= 0), where, "achieved",
+                 "a number of at least 0, \"inf\" or null");
     const Json::Value& monotone = json["monotone"];
     expect_field(monotone.isNull() || monotone.isBool(), where, "monotone", "true, false or null");
     if (monotone.isBool()) method.monotone = monotone.asBool();

@@ -59,6 +59,30 @@ double parse_field(std::string_view text, std::string_view column, const std::st
     return value;
 }
 
+// What a cell holds that is shown or computed with: figures, and objects of figures.
+constexpr std::array kFigures = {
+    "frames",        "fps",           "jank_ms",        "prepare_s",         "prepare_cpu_s",
+    "upload_s",      "gpu_bytes",     "peak_rss_bytes", "samples_served",    "samples_prepared",
+    "tiles_served",  "claimed_px",    "truth_frames",   "uncovered_samples", "terrain_bytes_read",
+    "bound_honesty", "wall_triangles"};
+constexpr std::array kSummaries = {
+    "frame_ms",       "select_ms",        "submit_ms",      "gpu_ms",
+    "cpu_ms",         "triangles",        "draw_calls",     "triangles_nondegenerate",
+    "uploaded_bytes", "screen_error_px",  "pixel_error_px", "pixel_error_realtime_px",
+    "crack_pixels",   "visible_error_px", "skirt_pixels",   "silhouette_px",
+    "popping_px",     "height_rmse_m",    "image",          "counters"};
+
+bool is_figure(const Json::Value& value) {
+    return value.isNull() || read_number_or_inf(value).has_value();
+}
+
+bool is_summary(const Json::Value& value) {
+    return value.isNull() ||
+           (value.isObject() && std::all_of(value.begin(), value.end(), [](const auto& member) {
+                return is_figure(member) || member.isObject();  // of the worst, its place
+            }));
+}
+
 void check_cell(const Json::Value& cell, const std::string& where) {
     if (!cell.isObject()) throw InputError(fmt::format("{}: no object; {}", where, kCopyAgain));
     if (const std::string id = get_string(cell, "cell", where); !is_file_name(id)) {
@@ -79,6 +103,20 @@ void check_cell(const Json::Value& cell, const std::string& where) {
                                  std::all_of(warnings.begin(), warnings.end(),
                                              [](const auto& text) { return text.isString(); })),
            "a list of texts");
+    for (const char* key : kFigures) {
+        expect(key, is_figure(cell[key]), "a number, \"inf\" or null");
+    }
+    for (const char* key : kSummaries) {
+        expect(key, is_summary(cell[key]), "an object of numbers, or null");
+    }
+    const Json::Value& economy = cell["economy"];
+    expect("economy",
+           economy.isNull() || (economy.isArray() && std::all_of(economy.begin(), economy.end(),
+                                                                 [](const auto& frame) {
+                                                                     return frame.isObject() &&
+                                                                            frame["frame"].isInt();
+                                                                 })),
+           "a list of frames, or null");
 }
 
 void check_schema(const Json::Value& json, const fs::path& file) {
@@ -157,6 +195,8 @@ std::vector<NeededTiles> read_needed(const Json::Value& flight, const std::strin
         entry.tiles = get_number(json, "tiles", where);
         entry.samples = get_number(json, "samples", where);
         entry.most_tiles_in_a_frame = get_number(json, "most_tiles_in_a_frame", where);
+        expect_field(entry.tiles >= 0 && entry.samples >= 0 && entry.most_tiles_in_a_frame >= 0,
+                     where, "tiles, samples, most_tiles_in_a_frame", "at least 0");
         needed.push_back(entry);
     }
     return needed;

@@ -56,7 +56,7 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
         const scenario::Scenario& scenario = plan.scenarios[i];
         Json::Value json;
         json["name"] = scenario.name;
-        json["base"] = plan.bases[i].string();
+        json["file"] = plan.origins[i].string();
         json["text"] = scenario.text;
         json["frames"] = scenario.frames;
         json["warmup_frames"] = scenario.warmup_frames;
@@ -85,8 +85,8 @@ public:
         const bool known = fs::exists(folder_.path() / "run.json");
         if (folder_.holds_a_run() && !request.resume) {
             throw InputError(
-                fmt::format("{}: this folder already holds a run; add --resume to finish it, or "
-                            "choose another with --out",
+                fmt::format("{0}: this folder already holds a run; finish it with `lodbench run "
+                            "--resume --out {0}`, or choose another with --out",
                             folder_.path().string()));
         }
         if (known) {
@@ -201,7 +201,7 @@ private:
         const scenario::Scenario& scenario = plan_.scenarios[which];
         cell.spec.out = folder_.path();
         cell.spec.scenario_file = scenario_file(cell.scenario);
-        cell.spec.scenario_base = plan_.bases[which];
+        cell.spec.scenario_origin = plan_.origins[which];
         const CellLimits limits{scenario.cell_time_limit_s, scenario.frame_time_limit_s,
                                 scenario.memory_limit_bytes};
         const CellResult result =

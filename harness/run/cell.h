@@ -20,8 +20,9 @@ namespace lodbench::run {
 /// All that a child process needs to know.
 struct CellSpec {
     std::string id;  ///< file-name safe, unique in the campaign: "lindstrom__tau=1__demo__r0"
-    std::filesystem::path scenario_file;  ///< copy in the results folder
-    std::filesystem::path scenario_base;  ///< where the scenario's relative files are relative to
+    std::filesystem::path scenario_file;    ///< copy in the results folder
+    std::filesystem::path scenario_origin;  ///< what was copied: named in messages, and what the
+                                            ///< scenario's relative files are relative to
     scenario::Overrides overrides;
     std::string method;
     std::filesystem::path plugin;
@@ -66,7 +67,7 @@ struct CellResult {
     std::uint64_t samples_served = 0, tiles_served = 0, terrain_bytes_read = 0;
     std::uint64_t samples_prepared = 0;  ///< of the samples served, those while it prepared
     std::vector<std::string> modules;    ///< of lodbench, that the cell's process loaded
-    Counters counters;       ///< of the lockstep replay: means over its frames, of `..._so_far` the last
+    Counters counters;  ///< of the lockstep replay: means over its frames, of `..._so_far` the last
     std::string depth_hash;  ///< at the randomly chosen frame, lockstep
     std::string terrain_name, terrain_checksum;
     std::string plugin_checksum;  ///< of the plugin file: 16 hex digits

@@ -123,7 +123,7 @@ std::string write_spec(const CellSpec& spec) {
     Json::Value json;
     json["id"] = spec.id;
     json["scenario_file"] = spec.scenario_file.string();
-    json["scenario_base"] = spec.scenario_base.string();
+    json["scenario_origin"] = spec.scenario_origin.string();
     Json::Value& overrides = json["overrides"] = Json::objectValue;
     if (spec.overrides.frames) overrides["frames"] = *spec.overrides.frames;
     if (spec.overrides.truth) overrides["truth"] = *spec.overrides.truth;
@@ -159,7 +159,7 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         CellSpec spec;
         spec.id = report::get_string(json, "id", where);
         spec.scenario_file = report::get_string(json, "scenario_file", where);
-        spec.scenario_base = report::get_string(json, "scenario_base", where);
+        spec.scenario_origin = report::get_string(json, "scenario_origin", where);
         const Json::Value& overrides = json["overrides"];
         if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
         if (overrides.isMember("truth")) spec.overrides.truth = overrides["truth"].asBool();

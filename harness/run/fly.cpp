@@ -32,8 +32,7 @@ namespace {
 
 scenario::Scenario read_scenario(const CellSpec& spec) {
     scenario::Scenario scenario =
-        scenario::parse_scenario(terrain::read_toml_text(spec.scenario_file),
-                                 spec.scenario_base / spec.scenario_file.filename());
+        scenario::parse_scenario(terrain::read_toml_text(spec.scenario_file), spec.scenario_origin);
     scenario::apply(spec.overrides, scenario);
     return scenario;
 }

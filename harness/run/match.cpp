@@ -87,9 +87,12 @@ report::MatchRecord match_record(const report::MatchTarget& target,
     return record;
 }
 
-MatchOutcome match(const RunRequest& request, const report::MatchTarget& target, int most_probes,
+MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, int most_probes,
                    const fs::path& program, CampaignObserver& observer,
                    const ProbeObserver& probed) {
+    const bool of_the_truth = target.quantity == report::MatchTarget::Quantity::pixel_error;
+    RunRequest request = asked;
+    if (of_the_truth) request.overrides.truth = true;
     if (request.scenarios.size() > 1) {
         throw InputError("match: name one scenario; a knob that fits one flight fits no other");
     }
@@ -129,7 +132,8 @@ MatchOutcome match(const RunRequest& request, const report::MatchTarget& target,
                                                  method.knob->text(value)));
             probe.out = request.out / "search" / fmt::format("{}-{:02}", method.method, number++);
             probe.overrides.repetitions = 1;
-            probe.overrides.truth = target.quantity == report::MatchTarget::Quantity::pixel_error;
+            probe.overrides.truth = of_the_truth;
+            probe.overrides.economy.emplace();  // none
             const CampaignOutcome flown = run_campaign(probe, program, quiet);
             if (!flown.error.empty()) throw EnvironmentError(flown.error);
             const Json::Value& cell = flown.cells.front();

@@ -187,7 +187,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
                             "name",
                             file.string(), scenario.name));
         }
-        const fs::path base = fs::absolute(file).parent_path();
+        const fs::path origin = fs::absolute(file);
         for (const auto& wanted : requests_of(scenario, request.methods, command, methods)) {
             const MethodInfo& method = find_method(plugins, wanted.id, wanted.where);
             used.insert(method.id);
@@ -211,7 +211,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
                 }
             }
         }
-        plan.bases.push_back(base);
+        plan.origins.push_back(origin);
         plan.scenarios.push_back(std::move(scenario));
     }
     for (const CommandSetting& setting : command) {
@@ -237,7 +237,7 @@ Json::Value plan_to_json(const Plan& plan) {
     for (const PlannedCell& cell : plan.cells) {
         Json::Value json = report::parse_json(write_spec(cell.spec), "a cell");
         // Where the results lie and where from they are read is known by whoever opens the folder.
-        for (const char* key : {"out", "scenario_file", "scenario_base"}) json.removeMember(key);
+        for (const char* key : {"out", "scenario_file", "scenario_origin"}) json.removeMember(key);
         json["scenario"] = cell.scenario;
         cells.append(json);
     }
@@ -253,14 +253,14 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out) {
         if (name.empty() || name.find('/') != name.npos) {
             throw InputError(fmt::format("{}: '{}' is no name of a scenario", where, name));
         }
-        const fs::path base = report::get_string(json, "base", where);
+        const fs::path origin = report::get_string(json, "file", where);
         plan.scenarios.push_back(scenario::parse_scenario(
-            report::read_text(out / "scenarios" / (name + ".toml")), base / (name + ".toml")));
-        plan.bases.push_back(base);
+            report::read_text(out / "scenarios" / (name + ".toml")), origin));
+        plan.origins.push_back(origin);
     }
     std::map<std::string, PluginListing> plugins;
     for (Json::Value json : report::get_array(run, "cells", where)) {
-        for (const char* key : {"out", "scenario_file", "scenario_base"}) json[key] = "";
+        for (const char* key : {"out", "scenario_file", "scenario_origin"}) json[key] = "";
         PlannedCell cell;
         cell.spec = read_spec(report::to_text(json), where);
         cell.scenario = report::get_string(json, "scenario", where);

@@ -36,9 +36,9 @@ struct PlannedCell {
 };
 
 struct Plan {
-    std::vector<scenario::Scenario> scenarios;  ///< overrides applied
-    std::vector<std::filesystem::path> bases;   ///< of each scenario: where its relative files lie
-    std::vector<PlannedCell> cells;             ///< in the order of flight
+    std::vector<scenario::Scenario> scenarios;   ///< overrides applied
+    std::vector<std::filesystem::path> origins;  ///< of each scenario: its file
+    std::vector<PlannedCell> cells;              ///< in the order of flight
     std::uint64_t seed = 1;
     std::vector<std::string> warnings;
 };

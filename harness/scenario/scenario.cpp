@@ -279,6 +279,18 @@ Scenario load_scenario(const std::filesystem::path& file) {
     return parse_scenario(text, file);
 }
 
+namespace {
+
+/// The frames at the same parts of a flight of another number of frames.
+void move_frames(std::vector<int>& frames, int from, int to) {
+    for (int& frame : frames) {
+        frame = from == 1 ? 0 : int(std::lround(double(frame) * (to - 1) / (from - 1)));
+    }
+    frames.erase(std::ranges::unique(frames).begin(), frames.end());
+}
+
+}  // namespace
+
 void apply(const Overrides& overrides, Scenario& scenario) {
     const auto require = [](const char* option, long long value, long long maximum) {
         if (value >= 1 && value <= maximum) return;
@@ -286,10 +298,10 @@ void apply(const Overrides& overrides, Scenario& scenario) {
     };
     if (overrides.frames) {
         require("--frames", *overrides.frames, kMaxFrames);
-        scenario.frames = *overrides.frames;
         for (auto* frames : {&scenario.measure.shots, &scenario.measure.economy}) {
-            std::erase_if(*frames, [&](int frame) { return frame >= scenario.frames; });
+            move_frames(*frames, scenario.frames, *overrides.frames);
         }
+        scenario.frames = *overrides.frames;
     }
     if (overrides.viewport) {
         require("--size: width", overrides.viewport->width, kMaxPixels);
@@ -313,7 +325,8 @@ void apply(const Overrides& overrides, Scenario& scenario) {
     if (scenario.terrain.out_of_core && scenario.measure.truth) {
         throw InputError(fmt::format(
             "{}: out_of_core is set, but measuring the truth needs the whole terrain in memory; "
-            "write truth = false under [measure], or fly with --no-truth",
+            "leave out_of_core out where it fits, or do not measure: truth = false under "
+            "[measure], or lodbench run --no-truth",
             scenario.terrain.where));
     }
 }

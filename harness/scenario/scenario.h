@@ -73,7 +73,8 @@ struct Overrides {
 /// message only.
 [[nodiscard]] Scenario load_scenario(const std::filesystem::path& file);
 
-/// Throws InputError for what is out of range, and for a scenario that then asks for what excludes
+/// Where the number of frames changes, frames that the scenario names move along. Throws InputError
+/// for what is out of range, and for a scenario that then asks for what excludes
 /// each other.
 void apply(const Overrides& overrides, Scenario& scenario);
 

@@ -343,6 +343,11 @@ TEST(Overrides, replace_what_they_name_and_are_checked) {
     EXPECT_EQ(scenario.viewport, (Viewport{64, 48}));
     EXPECT_EQ(scenario.seed, 5U);
     EXPECT_EQ(scenario.repetitions, 2);
+    EXPECT_THAT(scenario.measure.shots, ElementsAre(0, 30, 59));
+    apply({.frames = 2}, scenario);
+    EXPECT_THAT(scenario.measure.shots, ElementsAre(0, 1));
+    apply({.frames = 1}, scenario);
+    apply({.frames = 9}, scenario);
     EXPECT_THAT(scenario.measure.shots, ElementsAre(0));
     EXPECT_THROW(apply({.frames = 0}, scenario), InputError);
     EXPECT_THROW(apply({.viewport = Viewport{0, 4}}, scenario), InputError);

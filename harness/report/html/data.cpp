@@ -47,6 +47,11 @@ std::optional<double> figure(const CellGroup& group, const char* key, const char
     return measure::median(numbers_of(group.good, key, inner));
 }
 
+bool any_has(const ResultSet& set, const char* key) {
+    return std::ranges::any_of(
+        set.groups, [&](const CellGroup& group) { return figure(group, key).has_value(); });
+}
+
 std::optional<double> greatest(const CellGroup& group, const char* key, const char* inner) {
     const std::vector<double> values = numbers_of(group.good, key, inner);
     if (values.empty()) return std::nullopt;

@@ -49,6 +49,8 @@ struct ReportData {
 /// A figure of a group: the median over its repetitions, as in summary.md.
 [[nodiscard]] std::optional<double> figure(const CellGroup& group, const char* key,
                                            const char* inner = nullptr);
+/// Whether a setting of the set has it.
+[[nodiscard]] bool any_has(const ResultSet& set, const char* key);
 /// The greatest over its repetitions.
 [[nodiscard]] std::optional<double> greatest(const CellGroup& group, const char* key,
                                              const char* inner = nullptr);

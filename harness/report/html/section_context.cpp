@@ -128,7 +128,9 @@ void add_context(Page& page, const ReportData& data) {
         for (const Json::Value& scenario : folder.run["scenarios"]) {
             if (!scenario.isObject()) continue;
             page.open_details(
-                fmt::format("Scenario {}, as it was flown", value_text(scenario["name"])));
+                fmt::format("Scenario {}, as its file says; flown were {} frames of {} × {} pixels",
+                            value_text(scenario["name"]), value_text(scenario["frames"]),
+                            value_text(scenario["width"]), value_text(scenario["height"])));
             page.raw("<pre tabindex=\"0\">" + escape(value_text(scenario["text"])) + "</pre>\n");
             page.close_details();
         }

@@ -149,10 +149,12 @@ void add_curves(Page& page, const ReportData& data, const ResultSet& set) {
         page.not_measured("no cell is ok");
         return;
     }
-    page.paragraph(
-        "Of each frame the median over the repetitions. Error and popping are measured at every "
-        "n-th frame; a method without popping there stands still but for the camera.",
-        "note");
+    page.paragraph(fmt::format("Of each frame the median over the repetitions.{}",
+                               any_has(set, "truth_frames")
+                                   ? " Error and popping are measured at every n-th frame; a "
+                                     "method without popping there stands still but for the camera."
+                                   : ""),
+                   "note");
 }
 
 void add_map(Page& page, const ReportData& data, const ResultSet& set) {
@@ -195,14 +197,14 @@ void add_map(Page& page, const ReportData& data, const ResultSet& set) {
         size.y + 12, length * map.scale, length * map.scale + 8, size.y + 22,
         length >= 1000 ? fmt::format("{:g} km", length / 1000) : fmt::format("{:g} m", length));
     page.raw(svg);
-    page.raw(
-        fmt::format("<figcaption>{} frames over a terrain of {} × {} samples, {:g} × {:g} m apart, "
-                    "{:.0f} to {:.0f} "
-                    "m high; shown is what lies around the flight. North is up. Circle: first "
-                    "frame; square: last; strokes: where the camera looks; "
-                    "triangles: where each method's worst pixel was.</figcaption></figure>\n",
-                    flight->positions.size(), flight->rows, flight->columns, flight->spacing.x,
-                    flight->spacing.y, flight->min_height, flight->max_height));
+    page.raw(fmt::format(
+        "<figcaption>{} frames over a terrain of {} × {} samples, {:g} × {:g} m apart, "
+        "{:.0f} to {:.0f} "
+        "m high; shown is what lies around the flight. North is up. Circle: first "
+        "frame; square: last; strokes: where the camera looks{}.</figcaption></figure>\n",
+        flight->positions.size(), flight->rows, flight->columns, flight->spacing.x,
+        flight->spacing.y, flight->min_height, flight->max_height,
+        any_has(set, "truth_frames") ? "; triangles: where each method's worst pixel was" : ""));
 }
 
 }  // namespace lodbench::report::html

@@ -41,11 +41,6 @@ Table truth_table(const ResultSet& set, const char* id, const std::string& capti
     return table;
 }
 
-bool any_has(const ResultSet& set, const char* key) {
-    return std::ranges::any_of(
-        set.groups, [&](const CellGroup& group) { return figure(group, key).has_value(); });
-}
-
 constexpr const char* kNoTruth = "the truth was left out (--no-truth), or every cell failed";
 
 }  // namespace
@@ -110,6 +105,10 @@ void add_popping(Page& page, const ResultSet& set) {
         {"SSIM", "image", "ssim", 5}};
     if (!any_has(set, "truth_frames")) page.not_measured(kNoTruth);
     page.table(truth_table(set, "picture", "What the pictures show, " + set.title, kMeasures));
+    page.paragraph(
+        "PSNR and SSIM compare shaded pictures with the full grid's. A surface without error that "
+        "splits the cells along other diagonals is shaded otherwise: it has less than ∞ dB.",
+        "note");
 }
 
 void add_worst_pictures(Page& page, const ResultSet& set) {
