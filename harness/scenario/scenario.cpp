@@ -12,6 +12,7 @@
 #include "base/printable.h"
 #include "scenario/flight_section.h"
 #include "scenario/toml_section.h"
+#include "terrain/open_terrain.h"
 #include "terrain/synthetic.h"
 #include "terrain/toml_file.h"
 
@@ -120,6 +121,11 @@ void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& s
         source.origin_y = (*origin)[1];
     }
     section->refuse_unknown();
+    try {
+        terrain::check_source(source);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", source.where, error.what()));
+    }
 }
 
 void read_camera(Section& top, Scenario& scenario) {

@@ -230,7 +230,7 @@ class Report(unittest.TestCase):
         first = [economy(50, 9000, (0.5, 3000, 3.0), (4, 1500, 6.0)), economy(10, 8000, (0.25, 1000, 8.0))]
         second = [economy(50, 9100, (0.5, 3000, 5.0), (4, 1500, 6.0))]
         cells = [cell("a0", method="a", economy=first), cell("a1", method="a", repetition=1, economy=second),
-                 cell("b0", method="b", economy=[economy(50, 7, (0, 0, None), None), "junk", {"frame": "x"}]),
+                 cell("b0", method="b", economy=[economy(50, 7, (0, 0, None), None)]),
                  cell("c0", method="c")]
         page, text = self.make(write_folder(self.root / "run", cells))
         rows = {(row["method"][0], row["frame"][0]): {field: value for field, (_, value) in row.items() if value}
@@ -238,8 +238,9 @@ class Report(unittest.TestCase):
         def fields(frame, triangles, p999, max=None):
             row = {"frame": frame, "triangles": triangles, "full_triangles": 400000}
             for key, figures in (("p999", p999), ("max", max)):
-                names = ("target_px", "minimal_triangles", "ratio")
-                row.update({f"{key}.{name}": value for name, value in zip(names, figures or ()) if value is not None})
+                names = ("target_px", "minimal_triangles", "ratio", "greedy_px")
+                figures = (*figures, figures[0]) if figures else ()
+                row.update({f"{key}.{name}": value for name, value in zip(names, figures) if value is not None})
             return {key: f"{value:g}" for key, value in row.items()}
         self.assertEqual(rows, {("a", "10"): fields(10, 8000, (0.25, 1000, 8)),
                                 ("a", "50"): fields(50, 9050, (0.5, 3000, 4), (4, 1500, 6)),
@@ -274,7 +275,7 @@ class Report(unittest.TestCase):
         run = {"warnings": [everything], "command_line": everything, "commit": everything, "tool_version": everything,
                "scenarios": [{"name": everything, "text": everything}],
                "gl": {"renderer": everything, "software": True, "timer_verdict": everything}, everything: everything}
-        search = match([searched(h, h, [(1, 2)], 1, h, failure=h) for h in HOSTILE + ["<b>not flown</b>"]])
+        search = match([searched(h, h, [(1, 2)], 1, failure=h) for h in HOSTILE + ["<b>not flown</b>"]])
         page, text = self.make(write_folder(self.root / HOSTILE[1].replace("/", ""), cells, run, match=search))
         tags = {tag for tag, _ in page.elements}
         self.assertLessEqual(tags, {tag for tag, _ in reference.elements} | {"pre", "details", "summary"})
@@ -293,7 +294,7 @@ class Report(unittest.TestCase):
             self.assertIn(hostile, titles)
             self.assertIn(hostile, [row["method"][0].split(" " + hostile)[0] for row in page.rows("summary")])
         for row, hostile in zip(page.rows("match"), HOSTILE[:5]):
-            self.assertEqual([row[field][0] for field in ("method", "knob", "outcome", "failure")], [hostile] * 4)
+            self.assertEqual([row[field][0] for field in ("method", "knob", "failure")], [hostile] * 3)
         self.assertNotIn("\0", text)
 
     def test_the_page_asks_for_nothing_and_its_policy_forbids_it(self):
@@ -417,6 +418,14 @@ class Report(unittest.TestCase):
             "list": (lambda f: (f / "cells.jsonl").write_text("[]\n"), "cells.jsonl:1: no object"),
             "field": (change("cells.jsonl", '"method"', '"method_"'), "cells.jsonl:1: 'method' is missing"),
             "type": (change("cells.jsonl", '"params": {}', '"params": 7'), "cells.jsonl:1: 'params' is not an object"),
+            "figure": (change("cells.jsonl", '"gpu_bytes": ', '"gpu_bytes": "1", "was": '),
+                       "cells.jsonl:1: 'gpu_bytes' is not a number"),
+            "summary": (change("cells.jsonl", '"frame_ms": ', '"frame_ms": {"median": "abc"}, "was": '),
+                        "cells.jsonl:1: 'frame_ms' is not an object of numbers"),
+            "economy": (change("cells.jsonl", '"economy": null', '"economy": "q"'),
+                        "cells.jsonl:1: 'economy' is not a list of frames"),
+            "economy-frame": (change("cells.jsonl", '"economy": null', '"economy": [{"frame": "x"}]'),
+                              "cells.jsonl:1: 'economy' is not a list of frames"),
             "twice": (change("cells.jsonl", "b__r0", "a__r0"), "cells.jsonl:2: cell 'a__r0' is there twice"),
             "escape": (change("cells.jsonl", "a__r0", "../a__r0"), "cells.jsonl:1: '../a__r0' is no name"),
             "frames": (lambda f: (f / "frames" / "b__r0.csv").unlink(), "b__r0.csv: there is no such file"),
@@ -432,6 +441,7 @@ class Report(unittest.TestCase):
             "needed-entry": (flown(needed=[7]), "demo.json: needed: 'target_px' is missing"),
             "needed-order": (flown(needed=[needed(1, 2, 3), needed(1, 2, 3)]),
                              "demo.json: needed: 'target_px' is not positive and rising"),
+            "needed-negative": (flown(needed=[needed(1, -2, 3)]), "most_tiles_in_a_frame' is not at least 0"),
             "needed-text": (flown(needed=[needed(1, 2, "3")]),
                             "demo.json: needed: 'most_tiles_in_a_frame' is not a number"),
             "match-json": (lambda f: (f / "match.json").write_text("{"), "match.json: this is not JSON"),
@@ -446,6 +456,8 @@ class Report(unittest.TestCase):
             "match-method": (searched_as(methods=[7]), "match.json: methods: 'method' is missing"),
             "match-knob": (found(knob=1), "match.json: method 'm': 'knob' is not text or null"),
             "match-outcome": (found(outcome=[]), "match.json: method 'm': 'outcome' is not text or null"),
+            "match-result": (found(outcome="foo"), "match.json: method 'm': 'outcome' is not met, unreachable"),
+            "match-negative": (found(achieved=-1), "match.json: method 'm': 'achieved' is not a number of at least 0"),
             "match-failure": (found(failure={}), "match.json: method 'm': 'failure' is not text or null"),
             "match-value": (found(knob_value="1"), "match.json: method 'm': 'knob_value' is not a number or null"),
             "match-achieved": (found(achieved="x"), "match.json: method 'm': 'achieved' is not a number"),

@@ -352,8 +352,9 @@ TEST_F(StoreCommand, flown_out_of_core_skips_the_methods_that_hold_it_whole) {
     const Finished measured = fly("out_of_core = true\n", {});
     EXPECT_EQ(measured.status, 2);
     EXPECT_THAT(measured.output, HasSubstr("s.toml:2: out_of_core is set, but measuring the truth "
-                                           "needs the whole terrain in memory; write truth = false "
-                                           "under [measure], or fly with --no-truth"));
+                                           "needs the whole terrain in memory; leave out_of_core "
+                                           "out where it fits, or do not measure: truth = false "
+                                           "under [measure], or lodbench run --no-truth"));
     const Finished flown = fly("out_of_core = true\n", {"--no-truth"});
     EXPECT_EQ(flown.status, 0) << flown.output;
     std::map<std::string, Json::Value> cells;

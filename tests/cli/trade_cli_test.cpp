@@ -17,11 +17,13 @@ class Trade : public testing::Test {
 protected:
     Finished lodbench(const std::string& command, const Arguments& more) {
         const fs::path file = folder_.path() / "small.toml";
-        std::ofstream(file) << "name = \"small\"\n[terrain]\nsynthetic = \"ridged\"\nrows = 129\n"
-                               "columns = 129\nspacing = 10\n[viewport]\nwidth = 96\nheight = 72\n"
+        std::ofstream(file) << "name = \"small\"\n[terrain]\n"
+                            << terrain_
+                            << "[viewport]\nwidth = 96\nheight = 72\n"
                                "[flight]\nkind = \"line\"\nframes = 4\nwarmup_frames = 1\n"
                                "start = [640, 100, 400]\nend = [640, 600, 400]\npitch = -30\n"
-                               "[measure]\nevery = 2\nshots = [0]\n[run]\nrepetitions = 1\n";
+                               "[measure]\nevery = 2\nshots = [0]\n"
+                            << measure_ << "[run]\nrepetitions = 1\n";
         Arguments arguments = {command, file.string()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_lodbench(arguments, folder_.path(), [this] {
@@ -38,6 +40,8 @@ protected:
     }
 
     ScratchFolder folder_;
+    std::string terrain_ = "synthetic = \"ridged\"\nrows = 129\ncolumns = 129\nspacing = 10\n";
+    std::string measure_;  ///< more of that table
 };
 
 TEST_F(Trade, sweep_flies_each_knob_around_its_default_and_marks_the_front) {
@@ -170,6 +174,47 @@ TEST_F(Trade, economy_compares_a_frame_with_what_would_do_at_the_same_error) {
     EXPECT_THAT(text_of(fs::path(out()) / "economy.md"), HasSubstr("| lindstrom "));
     EXPECT_EQ(lodbench("economy", {"--frame", "4", "--out", out("other")}).status, 2);
     EXPECT_THAT(errors(), HasSubstr("--frame 4: the flight has the frames 0 to 3"));
+}
+
+TEST_F(Trade, what_needs_the_truth_measures_it_whatever_the_scenario_says) {
+    measure_ = "truth = false\n";
+    for (const auto& [command, more] :
+         {std::pair<std::string, Arguments>{"sweep", {"--points", "1"}},
+          {"economy", {"--frame", "1"}},
+          {"match", {"--error", "1", "--probes", "2"}}}) {
+        Arguments arguments = {"--method", "lindstrom", "--json", "--out", out(command)};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Json::Value cell = json(lodbench(command, arguments))["cells"][0];
+        EXPECT_TRUE(cell["pixel_error_px"]["p999"].isNumeric()) << command;
+    }
+}
+
+TEST_F(Trade, out_of_core_no_error_is_matched_and_nothing_is_begun) {
+    const std::string store = (folder_.path() / "a.tiles").string();
+    ASSERT_EQ(run_lodbench({"terrain", "synth", "ridged", "--rows", "129", "--columns", "129",
+                            "--spacing", "10", "-o", store},
+                           folder_.path())
+                  .status,
+              0);
+    terrain_ = "file = \"" + store + "\"\nout_of_core = true\n";
+    measure_ = "truth = false\n";
+    const auto match = [&](const Arguments& target) {
+        Arguments arguments = {"--method", "dltq", "--probes", "2", "--out", out("match")};
+        arguments.insert(arguments.end(), target.begin(), target.end());
+        return lodbench("match", arguments).status;
+    };
+    EXPECT_EQ(match({"--error", "1"}), 2);
+    EXPECT_THAT(errors(), HasSubstr("small.toml:3: out_of_core is set, but measuring the truth "
+                                    "needs the whole terrain in memory"));
+    EXPECT_FALSE(fs::exists(out("match")));
+    EXPECT_EQ(match({"--frame-ms", "5"}), 0) << errors();
+    for (const char* command : {"economy", "sweep"}) {
+        Arguments arguments = {"--method", "dltq", "--out", out(command)};
+        if (std::string(command) == "economy") arguments.insert(arguments.end(), {"--frame", "1"});
+        EXPECT_EQ(lodbench(command, arguments).status, 2) << command;
+        EXPECT_THAT(errors(), HasSubstr("out_of_core is set")) << command;
+        EXPECT_FALSE(fs::exists(out(command)));
+    }
 }
 
 }  // namespace
