@@ -6,37 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "api/error.h"
 #include "measure/drawn_surface.h"
 #include "measure/sample_errors.h"
-#include "terrain/height_field.h"
+#include "unit/form_views.h"
 
 namespace lodbench::measure {
 namespace {
 
-std::unique_ptr<terrain::HeightField> form(const std::string& name, int rows, int columns) {
-    terrain::TerrainSource source;
-    source.synthetic = name;
-    source.rows = rows;
-    source.columns = columns;
-    source.spacing_x = 10;
-    source.spacing_y = 12;
-    return terrain::load_terrain(source);
-}
-
-Camera camera_over(const TerrainInfo& info, double heading, double pitch, double height) {
-    const double degree = std::numbers::pi / 180;
-    Camera camera;
-    camera.viewport = {320, 240};
-    const glm::dvec2 middle = 0.5 * (info.extent_min() + info.extent_max());
-    camera.position = {middle, info.max_height + height};
-    camera.orientation = Camera::look({std::sin(heading * degree) * std::cos(pitch * degree),
-                                       std::cos(heading * degree) * std::cos(pitch * degree),
-                                       std::sin(pitch * degree)});
-    return camera;
-}
+using test::camera_over;
+using test::form;
 
 /// As the harness measures any method.
 ErrorSummary measured(const GreedyTriangulation& greedy, const ReferenceTerrain& terrain,

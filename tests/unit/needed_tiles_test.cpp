@@ -7,35 +7,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "api/error.h"
 #include "measure/sample_errors.h"
-#include "terrain/height_field.h"
+#include "unit/form_views.h"
 
 namespace lodbench::measure {
 namespace {
 
-std::unique_ptr<terrain::HeightField> ridged(int rows, int columns) {
-    terrain::TerrainSource source;
-    source.synthetic = "ridged";
-    source.rows = rows;
-    source.columns = columns;
-    source.spacing_x = 10;
-    source.spacing_y = 12;
-    return terrain::load_terrain(source);
-}
+using test::camera_over;
 
-Camera camera_over(const TerrainInfo& info, double heading, double pitch, double height) {
-    const double degree = std::numbers::pi / 180;
-    Camera camera;
-    camera.viewport = {320, 240};
-    const glm::dvec2 middle = 0.5 * (info.extent_min() + info.extent_max());
-    camera.position = {middle, info.max_height + height};
-    camera.orientation = Camera::look({std::sin(heading * degree) * std::cos(pitch * degree),
-                                       std::cos(heading * degree) * std::cos(pitch * degree),
-                                       std::sin(pitch * degree)});
-    return camera;
+std::unique_ptr<terrain::HeightField> ridged(int rows, int columns) {
+    return test::form("ridged", rows, columns);
 }
 
 /// Heights at the full resolution of a surface through a tile's samples: each finer level's samples

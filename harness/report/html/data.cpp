@@ -52,12 +52,6 @@ bool any_has(const ResultSet& set, const char* key) {
         set.groups, [&](const CellGroup& group) { return figure(group, key).has_value(); });
 }
 
-std::optional<double> greatest(const CellGroup& group, const char* key, const char* inner) {
-    const std::vector<double> values = numbers_of(group.good, key, inner);
-    if (values.empty()) return std::nullopt;
-    return *std::ranges::max_element(values);
-}
-
 std::optional<measure::RunInterval> interval(const CellGroup& group, std::uint64_t seed,
                                              const char* key, const char* inner) {
     const std::vector<double> values = numbers_of(group.good, key, inner);

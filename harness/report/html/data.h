@@ -51,9 +51,6 @@ struct ReportData {
                                            const char* inner = nullptr);
 /// Whether a setting of the set has it.
 [[nodiscard]] bool any_has(const ResultSet& set, const char* key);
-/// The greatest over its repetitions.
-[[nodiscard]] std::optional<double> greatest(const CellGroup& group, const char* key,
-                                             const char* inner = nullptr);
 /// Over the repetitions; nothing where one is not finite.
 [[nodiscard]] std::optional<measure::RunInterval> interval(const CellGroup& group,
                                                            std::uint64_t seed, const char* key,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
 #include "report/json.h"
@@ -75,13 +76,7 @@ std::string machine_html(const ResultFolder& folder) {
 }
 
 /// The numbers of a cell that are a number each, in one row.
-struct CellColumn {
-    const char* title;
-    const char* key;
-    const char* inner;
-    int digits;
-};
-constexpr CellColumn kCellColumns[] = {
+constexpr FigureColumn kCellColumns[] = {
     {"frames", "frames", nullptr, 0},
     {"fps", "fps", nullptr, 1},
     {"mean, ms", "frame_ms", "mean", 3},
@@ -162,12 +157,7 @@ void add_cells(Page& page, const ReportData& data) {
                          {"parameters", "params", false},
                          {"repetition", "repetition"},
                          {"status", "status", false}};
-        for (const CellColumn& column : kCellColumns) {
-            table.columns.push_back(
-                {column.title, column.inner == nullptr
-                                   ? std::string(column.key)
-                                   : fmt::format("{}.{}", column.key, column.inner)});
-        }
+        add_columns(table, kCellColumns);
         for (const Json::Value& cell : folder.cells) {
             std::string params;
             const Json::Value& values = cell["params"];
@@ -179,10 +169,7 @@ void add_cells(Page& page, const ReportData& data) {
             row = {text_field(cell["cell"].asString()), text_field(cell["scenario"].asString()),
                    text_field(params), number_field(cell["repetition"].asInt(), 0),
                    text_field(cell["status"].asString())};
-            for (const CellColumn& column : kCellColumns) {
-                row.push_back(number_field(
-                    read_number_or_inf(member_of(cell, column.key, column.inner)), column.digits));
-            }
+            add_fields(row, kCellColumns, {&cell});
         }
         page.open_details(fmt::format("{} cells of {}", folder.cells.size(), folder.name));
         page.table(table, table.rows.size());

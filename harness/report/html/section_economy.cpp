@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
 
@@ -13,18 +14,7 @@ namespace lodbench::report::html {
 
 namespace {
 
-constexpr double kMebibyte = 1048576.0;
-
-struct Figure {
-    const char* title;
-    const char* key;
-    const char* inner;
-    int digits;
-    double unit;
-    const char* explanation;
-};
-
-constexpr Figure kDemands[] = {
+constexpr FigureColumn kDemands[] = {
     {"screen error, px", "screen_error_px", "max_covered", 3, 1,
      "greatest over the samples in view that some triangle covers"},
     {"samples prepared", "samples_prepared", nullptr, 0, 1,
@@ -37,7 +27,7 @@ constexpr Figure kDemands[] = {
     {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte, "allocated on the GPU"},
 };
 
-constexpr Figure kFrameFigures[] = {
+constexpr FigureColumn kFrameFigures[] = {
     {"triangles", "triangles", nullptr, 0, 1, "drawn, those with an area"},
     {"full grid", "full_triangles", nullptr, 0, 1, "triangles of every sample in view"},
     {"P99.9, px", "p999", "target_px", 3, 1, "screen error of the frame"},
@@ -49,27 +39,6 @@ constexpr Figure kFrameFigures[] = {
     {"its max, px", "max", "greedy_px", 3, 1, "measured of the triangles that would do, max"},
     {"ratio, max", "max", "ratio", 2, 1, "triangles / would do, max"},
 };
-
-std::string field_name(const Figure& entry) {
-    return entry.inner == nullptr ? entry.key : fmt::format("{}.{}", entry.key, entry.inner);
-}
-
-template <std::size_t N>
-void add_columns(Table& table, const Figure (&figures)[N]) {
-    for (const Figure& entry : figures) {
-        table.columns.push_back({entry.title, field_name(entry), true, entry.explanation});
-    }
-}
-
-/// The median over `objects` of each figure.
-template <std::size_t N>
-void add_fields(std::vector<Field>& row, const Figure (&figures)[N],
-                const std::vector<const Json::Value*>& objects) {
-    for (const Figure& entry : figures) {
-        row.push_back(number_field(measure::median(numbers_of(objects, entry.key, entry.inner)),
-                                   entry.digits, entry.unit));
-    }
-}
 
 /// By frame, the objects of the repetitions that compared it.
 std::map<int, std::vector<const Json::Value*>> compared_frames(const CellGroup& group) {
@@ -121,14 +90,7 @@ Plot demand_plot(const ReportData& data, const ResultSet& set) {
 }
 
 void add_demand(Page& page, const ReportData& data, const ResultSet& set) {
-    Table table = table_of(set, "economy", "What a method asked for, " + set.title);
-    add_columns(table, kDemands);
-    for (const CellGroup& group : set.groups) {
-        std::vector<Field>& row = table.rows.emplace_back();
-        row.push_back(text_field(group.label));
-        add_fields(row, kDemands, group.good);
-    }
-    page.table(table);
+    page.table(figure_table(set, "economy", "What a method asked for, " + set.title, kDemands));
     if (set.flight == nullptr || set.flight->needed.empty()) {
         page.not_measured("what the views needed; flights/" + set.scenario +
                           ".json does not say it (it is of an older lodbench, or not there)");

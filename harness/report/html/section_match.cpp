@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
 
@@ -12,7 +13,10 @@ namespace lodbench::report::html {
 
 namespace {
 
-constexpr double kMebibyte = 1048576.0;
+constexpr FigureColumn kCosts[] = {{"median frame, ms", "frame_ms", "median"},
+                                   {"triangles", "triangles", "mean", 0, 1, "mean per frame"},
+                                   {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte},
+                                   {"preprocessing, s", "prepare_s"}};
 
 std::string quantity_title(const MatchTarget& target) {
     switch (target.quantity) {
@@ -66,21 +70,15 @@ Table search_table(const ResultSet& set, const MatchRecord& match) {
 Table cost_table(const ResultSet& set, const MatchTarget& target) {
     Table table = table_of(set, "equal_accuracy", "Flown where they met it, " + set.title);
     table.columns.push_back({quantity_title(target), "measured", true, "in this flight"});
-    table.columns.push_back({"median frame, ms", "frame_ms.median"});
-    table.columns.push_back({"triangles", "triangles.mean", true, "mean per frame"});
-    table.columns.push_back({"GPU, MiB", "gpu_bytes"});
-    table.columns.push_back({"preprocessing, s", "prepare_s"});
+    add_columns(table, kCosts);
     for (const CellGroup& group : set.groups) {
         std::vector<double> measured;
         for (const Json::Value* cell : group.good) {
             if (const auto value = target.measured(*cell)) measured.push_back(*value);
         }
-        table.rows.push_back({text_field(group.label),
-                              number_field(measure::median(measured), digits_of(target)),
-                              number_field(figure(group, "frame_ms", "median"), 3),
-                              number_field(figure(group, "triangles", "mean"), 0),
-                              number_field(figure(group, "gpu_bytes"), 1, kMebibyte),
-                              number_field(figure(group, "prepare_s"), 3)});
+        std::vector<Field>& row = table.rows.emplace_back();
+        row = {text_field(group.label), number_field(measure::median(measured), digits_of(target))};
+        add_fields(row, kCosts, group.good);
     }
     return table;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
 
@@ -9,36 +10,36 @@ namespace lodbench::report::html {
 
 namespace {
 
-constexpr double kMebibyte = 1048576.0;
+constexpr FigureColumn kResources[] = {
+    {"preprocessing, s", "prepare_s"},
+    {"CPU time, s", "prepare_cpu_s"},
+    {"start-up, s", "upload_s"},
+    {"allocated on the GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte},
+    {"peak resident size, MiB", "peak_rss_bytes", nullptr, 1, kMebibyte},
+    {"uploaded a frame, MiB", "uploaded_bytes", "mean", 3, kMebibyte},
+};
 
-struct Resource {
-    const char* key;
-    const char* inner;
+/// Of them, those that are plotted.
+struct ResourceBars {
     const char* title;
-    const char* axis;
-    int digits;
-    double unit;
-    bool plotted;
+    const FigureColumn* resource;
 };
-constexpr Resource kResources[] = {
-    {"prepare_s", nullptr, "Preprocessing", "preprocessing, s", 3, 1, true},
-    {"prepare_cpu_s", nullptr, "Preprocessing, CPU", "CPU time, s", 3, 1, false},
-    {"upload_s", nullptr, "Start-up", "start-up, s", 3, 1, false},
-    {"gpu_bytes", nullptr, "GPU memory", "allocated on the GPU, MiB", 1, kMebibyte, true},
-    {"peak_rss_bytes", nullptr, "Resident memory", "peak resident size, MiB", 1, kMebibyte, true},
-    {"uploaded_bytes", "mean", "Uploaded", "uploaded a frame, MiB", 3, kMebibyte, true},
-};
+constexpr ResourceBars kBars[] = {{"Preprocessing", &kResources[0]},
+                                  {"GPU memory", &kResources[3]},
+                                  {"Resident memory", &kResources[4]},
+                                  {"Uploaded", &kResources[5]}};
 
-Plot resource_plot(const ReportData& data, const ResultSet& set, const Resource& resource) {
+Plot resource_plot(const ReportData& data, const ResultSet& set, const char* title,
+                   const FigureColumn& resource) {
     Plot plot;
     plot.kind = Plot::Kind::bars;
     plot.id = fmt::format("{}-{}", set.id, resource.key);
-    plot.title = resource.title;
-    plot.x_title = resource.axis;
+    plot.title = title;
+    plot.x_title = resource.title;
     plot.y_title = "method";
     plot.can_be_logarithmic = true;
     const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
-    Series series{resource.title};
+    Series series{title};
     for (std::size_t c = 0; c < chosen.size(); ++c) {
         const CellGroup& group = set.groups[chosen[c]];
         plot.categories.push_back({group.label, group.method, data.color_of(group)});
@@ -59,24 +60,12 @@ Plot resource_plot(const ReportData& data, const ResultSet& set, const Resource&
 void add_resources(Page& page, const ReportData& data, const ResultSet& set) {
     page.heading(3, "Preprocessing and memory", set.id + "-resources");
     std::vector<Plot> plots;
-    Table table = table_of(set, "resources", "Preprocessing and memory, " + set.title);
-    for (const Resource& resource : kResources) {
-        if (resource.plotted) plots.push_back(resource_plot(data, set, resource));
-        table.columns.push_back(
-            {resource.axis, resource.inner == nullptr
-                                ? resource.key
-                                : fmt::format("{}.{}", resource.key, resource.inner)});
-    }
-    for (const CellGroup& group : set.groups) {
-        std::vector<Field>& row = table.rows.emplace_back();
-        row.push_back(text_field(group.label));
-        for (const Resource& resource : kResources) {
-            row.push_back(number_field(figure(group, resource.key, resource.inner), resource.digits,
-                                       resource.unit));
-        }
+    for (const ResourceBars& bars : kBars) {
+        plots.push_back(resource_plot(data, set, bars.title, *bars.resource));
     }
     if (!page.plots(plots)) page.not_measured("no cell is ok");
-    page.table(table);
+    page.table(
+        figure_table(set, "resources", "Preprocessing and memory, " + set.title, kResources));
 }
 
 }  // namespace lodbench::report::html

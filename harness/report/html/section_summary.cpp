@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
 #include "report/trade.h"
@@ -13,44 +14,27 @@ namespace lodbench::report::html {
 
 namespace {
 
-constexpr double kMebibyte = 1048576.0;
-
-/// A column of the summary: a field of a cell, gathered over the repetitions.
-struct Figure {
-    const char* title;
-    const char* key;
-    const char* inner;
-    int digits;
-    double unit;
-    bool greatest;  ///< over the repetitions, instead of the median
-    const char* explanation;
-};
-
-constexpr Figure kFigures[] = {
-    {"median, ms", "frame_ms", "median", 3, 1, false, "median frame time"},
-    {"P90, ms", "frame_ms", "p90", 3, 1, false, "nine frames in ten are faster"},
-    {"max, ms", "frame_ms", "max", 3, 1, true, "the slowest frame of all repetitions"},
-    {"triangles", "triangles", "mean", 0, 1, false, "mean per frame, as the GPU was asked to draw"},
-    {"P99.9 error, px", "pixel_error_px", "p999", 3, 1, false,
+constexpr FigureColumn kFigures[] = {
+    {"median, ms", "frame_ms", "median", 3, 1, "median frame time"},
+    {"P90, ms", "frame_ms", "p90", 3, 1, "nine frames in ten are faster"},
+    {"max, ms", "frame_ms", "max", 3, 1, "the slowest frame of all repetitions", true},
+    {"triangles", "triangles", "mean", 0, 1, "mean per frame, as the GPU was asked to draw"},
+    {"P99.9 error, px", "pixel_error_px", "p999", 3, 1,
      "of a thousand pixels all but one are nearer to the truth"},
-    {"at pace, px", "pixel_error_realtime_px", "p999", 3, 1, false,
+    {"at pace, px", "pixel_error_realtime_px", "p999", 3, 1,
      "the same in the real-time replay: what the frame times showed; asynchronous methods only"},
-    {"max error, px", "pixel_error_px", "max", 2, 1, false, "of the worst pixel"},
-    {"cracks, px", "crack_pixels", "total", 0, 1, false,
+    {"max error, px", "pixel_error_px", "max", 2, 1, "of the worst pixel"},
+    {"cracks, px", "crack_pixels", "total", 0, 1,
      "pixels that show what lies behind the surface, over all measured frames"},
-    {"popping P99.9, px", "popping_px", "p999", 3, 1, false,
+    {"popping P99.9, px", "popping_px", "p999", 3, 1,
      "how far drawn points jump on screen from a frame to the next, the camera's motion apart"},
-    {"honesty", "bound_honesty", nullptr, 3, 1, false,
+    {"honesty", "bound_honesty", nullptr, 3, 1,
      "greatest screen error / claimed bound: above 1 the claim does not hold"},
-    {"prepare, s", "prepare_s", nullptr, 3, 1, false, "preprocessing, wall time"},
-    {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte, false, "allocated on the GPU"},
-    {"RSS, MiB", "peak_rss_bytes", nullptr, 0, kMebibyte, true,
-     "greatest resident memory of the method's process"},
+    {"prepare, s", "prepare_s", nullptr, 3, 1, "preprocessing, wall time"},
+    {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte, "allocated on the GPU"},
+    {"RSS, MiB", "peak_rss_bytes", nullptr, 0, kMebibyte,
+     "greatest resident memory of the method's process", true},
 };
-
-std::string field_name(const Figure& entry) {
-    return entry.inner == nullptr ? entry.key : fmt::format("{}.{}", entry.key, entry.inner);
-}
 
 /// Groups on the front of P99.9 error against frame time.
 std::set<std::size_t> fastest_for_their_error(const ResultSet& set) {
@@ -92,14 +76,13 @@ void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
         {"fps, interval", "fps.interval", false,
          "over the repetitions: from five on a 95 % bootstrap interval of the median, below that "
          "the range"});
-    std::vector<Figure> figures;
-    for (const Figure& entry : kFigures) {
+    std::vector<FigureColumn> figures;
+    for (const FigureColumn& column : kFigures) {
         // A column for asynchronous methods alone.
-        const bool realtime = std::string_view(entry.key) == "pixel_error_realtime_px";
-        if (realtime && !any_has(data, entry.key)) continue;
-        figures.push_back(entry);
-        table.columns.push_back({entry.title, field_name(entry), true, entry.explanation});
+        const bool realtime = std::string_view(column.key) == "pixel_error_realtime_px";
+        if (!realtime || any_has(data, column.key)) figures.push_back(column);
     }
+    add_columns(table, figures);
     table.columns.push_back(
         {"front", "front", false,
          "no other setting here is both faster (fps) and nearer to the truth (P99.9)"});
@@ -113,11 +96,7 @@ void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
         row.push_back(fps && group.good.size() > 1
                           ? text_field(fmt::format("{:.1f} to {:.1f}", fps->low, fps->high))
                           : Field{"-", ""});
-        for (const Figure& entry : figures) {
-            row.push_back(number_field(entry.greatest ? greatest(group, entry.key, entry.inner)
-                                                      : figure(group, entry.key, entry.inner),
-                                       entry.digits, entry.unit));
-        }
+        add_fields(row, figures, group.good);
         row.push_back(front.contains(i) ? Field{"●", "yes"} : Field{"", "no"});
     }
     if (!set.plotted) {

@@ -6,40 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
 
 namespace lodbench::report::html {
 
 namespace {
-
-/// A row for each group with what `fields` names ("crack_pixels.total"), at `digits`.
-struct Measure {
-    const char* title;
-    const char* key;
-    const char* inner;
-    int digits;
-};
-
-template <std::size_t count>
-Table truth_table(const ResultSet& set, const char* id, const std::string& caption,
-                  const Measure (&measures)[count]) {
-    Table table = table_of(set, id, caption);
-    for (const Measure& measure : measures) {
-        table.columns.push_back(
-            {measure.title, measure.inner == nullptr
-                                ? std::string(measure.key)
-                                : fmt::format("{}.{}", measure.key, measure.inner)});
-    }
-    for (const CellGroup& group : set.groups) {
-        std::vector<Field>& row = table.rows.emplace_back();
-        row.push_back(text_field(group.label));
-        for (const Measure& measure : measures) {
-            row.push_back(number_field(figure(group, measure.key, measure.inner), measure.digits));
-        }
-    }
-    return table;
-}
 
 constexpr const char* kNoTruth = "the truth was left out (--no-truth), or every cell failed";
 
@@ -77,7 +50,7 @@ void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
     if (!drawn || !page.plots({plot}, true)) {
         page.not_measured("no method here claims a bound, or the truth was left out");
     }
-    static constexpr Measure kMeasures[] = {
+    static constexpr FigureColumn kMeasures[] = {
         {"claimed, px", "claimed_px", nullptr, 3},
         {"measured max, px", "screen_error_px", "max", 3},
         {"P99.9, px", "screen_error_px", "p999", 3},
@@ -87,12 +60,12 @@ void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
         {"measured / claimed", "bound_honesty", nullptr, 3},
         {"seen by the camera, max, px", "visible_error_px", "max", 3}};
     page.table(
-        truth_table(set, "bounds", "Screen error and claimed bounds, " + set.title, kMeasures));
+        figure_table(set, "bounds", "Screen error and claimed bounds, " + set.title, kMeasures));
 }
 
 void add_popping(Page& page, const ResultSet& set) {
     page.heading(3, "Popping, cracks and the picture", set.id + "-picture");
-    static constexpr Measure kMeasures[] = {
+    static constexpr FigureColumn kMeasures[] = {
         {"popping max, px", "popping_px", "max", 3},
         {"popping P99.9, px", "popping_px", "p999", 3},
         {"samples that pop over 1 px", "popping_px", "over_1px", 0},
@@ -104,7 +77,7 @@ void add_popping(Page& page, const ResultSet& set) {
         {"PSNR, dB", "image", "psnr_db", 2},
         {"SSIM", "image", "ssim", 5}};
     if (!any_has(set, "truth_frames")) page.not_measured(kNoTruth);
-    page.table(truth_table(set, "picture", "What the pictures show, " + set.title, kMeasures));
+    page.table(figure_table(set, "picture", "What the pictures show, " + set.title, kMeasures));
     page.paragraph(
         "PSNR and SSIM compare shaded pictures with the full grid's. A surface without error that "
         "splits the cells along other diagonals is shaded otherwise: it has less than ∞ dB.",

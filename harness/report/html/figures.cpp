@@ -1,0 +1,44 @@
+#include "report/html/figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/html/sections.h"
+
+namespace lodbench::report::html {
+
+std::string FigureColumn::field() const {
+    return inner == nullptr ? key : fmt::format("{}.{}", key, inner);
+}
+
+void add_columns(Table& table, std::span<const FigureColumn> columns) {
+    for (const FigureColumn& column : columns) {
+        table.columns.push_back({column.title, column.field(), true, column.explanation});
+    }
+}
+
+void add_fields(std::vector<Field>& row, std::span<const FigureColumn> columns,
+                const std::vector<const Json::Value*>& objects) {
+    for (const FigureColumn& column : columns) {
+        const std::vector<double> values = numbers_of(objects, column.key, column.inner);
+        const auto value = values.empty()    ? std::nullopt
+                           : column.greatest ? std::optional(*std::ranges::max_element(values))
+                                             : measure::median(values);
+        row.push_back(number_field(value, column.digits, column.unit));
+    }
+}
+
+Table figure_table(const ResultSet& set, const char* id, const std::string& caption,
+                   std::span<const FigureColumn> columns) {
+    Table table = table_of(set, id, caption);
+    add_columns(table, columns);
+    for (const CellGroup& group : set.groups) {
+        std::vector<Field>& row = table.rows.emplace_back();
+        row.push_back(text_field(group.label));
+        add_fields(row, columns, group.good);
+    }
+    return table;
+}
+
+}  // namespace lodbench::report::html
