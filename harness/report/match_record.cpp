@@ -99,6 +99,10 @@ std::string MatchTarget::words() const {
     return fmt::format("mean frame time = {} ms", value);
 }
 
+bool MatchTarget::meets(double measured) const {
+    return measured >= value * (1 - tolerance) && measured <= value * (1 + tolerance);
+}
+
 std::optional<double> MatchTarget::measured(const Json::Value& cell) const {
     switch (quantity) {
         case Quantity::pixel_error: return pixel_error(cell, metric);

@@ -21,6 +21,8 @@ struct MatchTarget {
 
     /// "p999 of the pixel error = 1 px"
     [[nodiscard]] std::string words() const;
+    /// Whether a measured value is within the tolerance.
+    [[nodiscard]] bool meets(double measured) const;
     /// The quantity in a cell's record: mean over the flight where there is one value a frame.
     [[nodiscard]] std::optional<double> measured(const Json::Value& cell) const;
 };

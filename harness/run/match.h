@@ -17,6 +17,7 @@ namespace lodbench::run {
 struct MatchedMethod {
     std::string method;
     std::optional<Knob> knob;
+    bool asynchronous = false;  ///< where it meets the target it is flown three times: the median
     SearchResult search;
     std::string failure;  ///< why a probe gave nothing; "" when none did
 };

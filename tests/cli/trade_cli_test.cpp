@@ -1,5 +1,6 @@
 // `lodbench sweep` and `lodbench match` as a person types them.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -131,6 +132,25 @@ TEST_F(Trade, match_finds_the_knob_and_flies_it_whatever_the_seed) {
         EXPECT_THAT(text_of(fs::path(out(seed)) / "match.md"), HasSubstr("| lindstrom "));
     }
     EXPECT_EQ(found[0], found[1]) << "the truth does not depend on the seed";
+}
+
+TEST_F(Trade, match_flies_an_asynchronous_method_three_times_where_it_meets_the_target) {
+    const Json::Value swept = json(lodbench(
+        "sweep", {"--method", "dltq", "--method", "hybrid-patches", "--knob-values", "dltq=64",
+                  "--knob-values", "hybrid-patches=4", "--json", "--out", out("sweep")}));
+    for (const Json::Value& row : swept["trade"]) {
+        // Reached by steps of four from the default.
+        const std::string method = row["method"].asString();
+        const Json::Value found =
+            json(lodbench("match", {"--method", method, "--error",
+                                    fmt::format("{}", row["pixel_error_px"].asDouble()),
+                                    "--tolerance", "10", "--json", "--out", out(method)}))["match"];
+        const Json::Value& entry = found["methods"][0];
+        ASSERT_EQ(entry["outcome"], "met") << method;
+        const auto flights =
+            std::distance(fs::directory_iterator(fs::path(out(method)) / "search"), {});
+        EXPECT_EQ(flights, entry["probes"].size() + (method == "dltq" ? 2 : 0)) << method;
+    }
 }
 
 TEST_F(Trade, match_says_what_cannot_be_reached_and_the_nearest_there_is) {
