@@ -48,7 +48,7 @@ Answer run_isolated(double seconds, const std::function<std::string()>& work) {
     for (bool ended = false; !ended;) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
         if (left.count() <= 0) {
-            return {Ending::timed_out, fmt::format("gave no answer within {:g} s", seconds), 0};
+            return {Ending::timed_out, fmt::format("gave no answer within {:g} s", seconds)};
         }
         ended = child.wait(std::min(left, std::chrono::milliseconds(1000)));
     }
@@ -61,10 +61,10 @@ Answer run_isolated(double seconds, const std::function<std::string()>& work) {
     }
     const std::string message = text.substr(1, text.size() - 2);
     switch (text.front()) {
-        case kAnswered: return {Ending::answered, message, 0};
-        case kRefused: return {Ending::refused, message, 0};
-        case kNoMeans: return {Ending::no_means, message, 0};
-        default: return {Ending::threw, message, 0};
+        case kAnswered: return {Ending::answered, message};
+        case kRefused: return {Ending::refused, message};
+        case kNoMeans: return {Ending::no_means, message};
+        default: return {Ending::threw, message};
     }
 }
 

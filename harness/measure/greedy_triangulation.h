@@ -8,7 +8,6 @@
 // vertex, until the error meets its target. Not the minimum, which is hard to find, but an upper
 // bound of it that sees every sample.
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>

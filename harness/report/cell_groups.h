@@ -12,6 +12,8 @@
 
 namespace lodbench::report {
 
+inline constexpr double kMebibyte = 1048576.0;  ///< bytes
+
 /// One method with one set of parameters on one scenario.
 struct CellGroup {
     std::string scenario;

@@ -13,7 +13,6 @@ namespace lodbench::report {
 
 namespace {
 
-constexpr double kMebibyte = 1048576.0;
 constexpr const char* kAbsent = "-";
 
 std::string median(const std::vector<double>& values, const char* format, double unit = 1) {

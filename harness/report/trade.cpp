@@ -214,7 +214,7 @@ std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
                  row.frame_ms ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
                                             row.frame_ms->low, row.frame_ms->high)
                               : "-",
-                 text_of(row.triangles, "{:.0f}"), text_of(row.gpu_bytes, "{:.1f}", 1048576),
+                 text_of(row.triangles, "{:.0f}"), text_of(row.gpu_bytes, "{:.1f}", kMebibyte),
                  text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
             for (const std::string& failure : row.failures) {
                 failures.push_back(row.label + ", " + failure);

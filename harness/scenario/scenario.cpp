@@ -245,6 +245,14 @@ void read_methods(Section& top, Scenario& scenario) {
     }
 }
 
+/// The frames at the same parts of a flight of another number of frames.
+void move_frames(std::vector<int>& frames, int from, int to) {
+    for (int& frame : frames) {
+        frame = from == 1 ? 0 : int(std::lround(double(frame) * (to - 1) / (from - 1)));
+    }
+    frames.erase(std::ranges::unique(frames).begin(), frames.end());
+}
+
 }  // namespace
 
 Scenario parse_scenario(std::string_view text, const std::filesystem::path& file) {
@@ -284,18 +292,6 @@ Scenario load_scenario(const std::filesystem::path& file) {
     }
     return parse_scenario(text, file);
 }
-
-namespace {
-
-/// The frames at the same parts of a flight of another number of frames.
-void move_frames(std::vector<int>& frames, int from, int to) {
-    for (int& frame : frames) {
-        frame = from == 1 ? 0 : int(std::lround(double(frame) * (to - 1) / (from - 1)));
-    }
-    frames.erase(std::ranges::unique(frames).begin(), frames.end());
-}
-
-}  // namespace
 
 void apply(const Overrides& overrides, Scenario& scenario) {
     const auto require = [](const char* option, long long value, long long maximum) {

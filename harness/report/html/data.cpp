@@ -47,9 +47,9 @@ std::optional<double> figure(const CellGroup& group, const char* key, const char
     return measure::median(numbers_of(group.good, key, inner));
 }
 
-bool any_has(const ResultSet& set, const char* key) {
+bool any_has(const ResultSet& set, const char* key, const char* inner) {
     return std::ranges::any_of(
-        set.groups, [&](const CellGroup& group) { return figure(group, key).has_value(); });
+        set.groups, [&](const CellGroup& group) { return figure(group, key, inner).has_value(); });
 }
 
 std::optional<measure::RunInterval> interval(const CellGroup& group, std::uint64_t seed,

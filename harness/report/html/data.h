@@ -50,7 +50,7 @@ struct ReportData {
 [[nodiscard]] std::optional<double> figure(const CellGroup& group, const char* key,
                                            const char* inner = nullptr);
 /// Whether a setting of the set has it.
-[[nodiscard]] bool any_has(const ResultSet& set, const char* key);
+[[nodiscard]] bool any_has(const ResultSet& set, const char* key, const char* inner = nullptr);
 /// Over the repetitions; nothing where one is not finite.
 [[nodiscard]] std::optional<measure::RunInterval> interval(const CellGroup& group,
                                                            std::uint64_t seed, const char* key,

@@ -29,6 +29,23 @@ void add_fields(std::vector<Field>& row, std::span<const FigureColumn> columns,
     }
 }
 
+Plot bars_of(const ReportData& data, const ResultSet& set, const std::string& id,
+             const std::string& title, const std::string& x_title,
+             const std::vector<std::size_t>& chosen) {
+    Plot plot;
+    plot.kind = Plot::Kind::bars;
+    plot.id = set.id + "-" + id;
+    plot.title = title;
+    plot.x_title = x_title;
+    plot.y_title = "method";
+    plot.can_be_logarithmic = true;
+    for (const std::size_t i : chosen) {
+        const CellGroup& group = set.groups[i];
+        plot.categories.push_back({group.label, group.method, data.color_of(group)});
+    }
+    return plot;
+}
+
 Table figure_table(const ResultSet& set, const char* id, const std::string& caption,
                    std::span<const FigureColumn> columns) {
     Table table = table_of(set, id, caption);

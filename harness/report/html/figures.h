@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "report/html/data.h"
+#include "report/html/plot.h"
 #include "report/html/table.h"
 
 namespace lodbench::report::html {
-
-inline constexpr double kMebibyte = 1048576.0;
 
 /// A figure of an object: its member `key`, or of that the member `inner`.
 struct FigureColumn {
@@ -32,6 +31,11 @@ void add_columns(Table& table, std::span<const FigureColumn> columns);
 /// A field for each column, over `objects`: the repetitions of a cell, or parts of them.
 void add_fields(std::vector<Field>& row, std::span<const FigureColumn> columns,
                 const std::vector<const Json::Value*>& objects);
+/// A bar plot, still without its series, of the settings `chosen` from the set.
+[[nodiscard]] Plot bars_of(const ReportData& data, const ResultSet& set, const std::string& id,
+                           const std::string& title, const std::string& x_title,
+                           const std::vector<std::size_t>& chosen);
+
 /// A row for each setting of the set, with these columns.
 [[nodiscard]] Table figure_table(const ResultSet& set, const char* id, const std::string& caption,
                                  std::span<const FigureColumn> columns);

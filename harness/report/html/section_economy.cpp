@@ -117,21 +117,15 @@ void add_demand(Page& page, const ReportData& data, const ResultSet& set) {
 }
 
 Plot ratio_plot(const ReportData& data, const ResultSet& set) {
-    Plot plot;
-    plot.kind = Plot::Kind::bars;
-    plot.id = set.id + "-economy-ratio";
-    plot.title = "Triangles drawn / would do, at the same P99.9";
-    plot.x_title = "ratio";
-    plot.y_title = "method";
-    plot.can_be_logarithmic = plot.logarithmic = true;
-    plot.reference = 1;
     const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
+    Plot plot = bars_of(data, set, "economy-ratio", "Triangles drawn / would do, at the same P99.9",
+                        "ratio", chosen);
+    plot.logarithmic = true;
+    plot.reference = 1;
     Series series{"ratio"};
     for (std::size_t c = 0; c < chosen.size(); ++c) {
-        const CellGroup& group = set.groups[chosen[c]];
-        plot.categories.push_back({group.label, group.method, data.color_of(group)});
         std::vector<double> ratios;
-        for (const auto& [frame, objects] : compared_frames(group)) {
+        for (const auto& [frame, objects] : compared_frames(set.groups[chosen[c]])) {
             const auto ratio = measure::median(numbers_of(objects, "p999", "ratio"));
             if (ratio) ratios.push_back(*ratio);
         }

@@ -31,19 +31,11 @@ constexpr ResourceBars kBars[] = {{"Preprocessing", &kResources[0]},
 
 Plot resource_plot(const ReportData& data, const ResultSet& set, const char* title,
                    const FigureColumn& resource) {
-    Plot plot;
-    plot.kind = Plot::Kind::bars;
-    plot.id = fmt::format("{}-{}", set.id, resource.key);
-    plot.title = title;
-    plot.x_title = resource.title;
-    plot.y_title = "method";
-    plot.can_be_logarithmic = true;
     const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
+    Plot plot = bars_of(data, set, resource.key, title, resource.title, chosen);
     Series series{title};
     for (std::size_t c = 0; c < chosen.size(); ++c) {
-        const CellGroup& group = set.groups[chosen[c]];
-        plot.categories.push_back({group.label, group.method, data.color_of(group)});
-        const auto runs = interval(group, set.seed, resource.key, resource.inner);
+        const auto runs = interval(set.groups[chosen[c]], set.seed, resource.key, resource.inner);
         if (!runs) continue;
         series.marks.push_back({runs->centre / resource.unit, double(c), runs->low / resource.unit,
                                 runs->high / resource.unit});

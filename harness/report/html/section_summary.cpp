@@ -47,13 +47,9 @@ std::set<std::size_t> fastest_for_their_error(const ResultSet& set) {
 }
 
 /// In any scenario: all tables of one kind have the same columns.
-bool any_has(const ReportData& data, const char* key) {
+bool any_has(const ReportData& data, const FigureColumn& column) {
     return std::ranges::any_of(data.sets, [&](const ResultSet& set) {
-        return std::ranges::any_of(set.groups, [&](const CellGroup& group) {
-            return std::ranges::any_of(group.good, [&](const Json::Value* cell) {
-                return !member_of(*cell, key).isNull();
-            });
-        });
+        return html::any_has(set, column.key, column.inner);
     });
 }
 
@@ -80,7 +76,7 @@ void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
     for (const FigureColumn& column : kFigures) {
         // A column for asynchronous methods alone.
         const bool realtime = std::string_view(column.key) == "pixel_error_realtime_px";
-        if (!realtime || any_has(data, column.key)) figures.push_back(column);
+        if (!realtime || any_has(data, column)) figures.push_back(column);
     }
     add_columns(table, figures);
     table.columns.push_back(

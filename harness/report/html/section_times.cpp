@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
 
@@ -14,32 +15,29 @@ namespace {
 constexpr std::array<std::array<const char*, 2>, 4> kBars = {
     {{"median", "median"}, {"p90", "P90"}, {"p99", "P99"}, {"max", "max"}}};
 
-struct Times {
-    const char* key;
-    const char* title;
-};
-constexpr Times kTimes[] = {{"frame_ms", "frame"},
-                            {"select_ms", "select"},
-                            {"submit_ms", "submit"},
-                            {"gpu_ms", "GPU"},
-                            {"cpu_ms", "CPU, all threads"}};
+constexpr FigureColumn kTimes[] = {{"frame mean", "frame_ms", "mean"},
+                                   {"frame median", "frame_ms", "median"},
+                                   {"frame p90", "frame_ms", "p90"},
+                                   {"frame p99", "frame_ms", "p99"},
+                                   {"frame max", "frame_ms", "max"},
+                                   {"frame low1", "frame_ms", "low1"},
+                                   {"select median", "select_ms", "median"},
+                                   {"select max", "select_ms", "max"},
+                                   {"submit median", "submit_ms", "median"},
+                                   {"submit max", "submit_ms", "max"},
+                                   {"GPU median", "gpu_ms", "median"},
+                                   {"GPU max", "gpu_ms", "max"},
+                                   {"CPU, all threads median", "cpu_ms", "median"},
+                                   {"CPU, all threads max", "cpu_ms", "max"},
+                                   {"over budget, ms", "jank_ms", nullptr, 1, 1,
+                                    "sum over the frames of what goes over the scenario's budget"}};
 
 }  // namespace
 
 void add_times(Page& page, const ReportData& data, const ResultSet& set) {
     page.heading(3, "How even it runs", set.id + "-times");
-    Plot plot;
-    plot.kind = Plot::Kind::bars;
-    plot.id = set.id + "-percentiles";
-    plot.title = "Frame times";
-    plot.x_title = "frame time, ms";
-    plot.y_title = "method";
-    plot.can_be_logarithmic = true;
     const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
-    for (const std::size_t i : chosen) {
-        const CellGroup& group = set.groups[i];
-        plot.categories.push_back({group.label, group.method, data.color_of(group)});
-    }
+    Plot plot = bars_of(data, set, "percentiles", "Frame times", "frame time, ms", chosen);
     for (std::size_t k = 0; k < kBars.size(); ++k) {
         Series series{kBars[k][1]};
         series.variant = k;
@@ -61,31 +59,7 @@ void add_times(Page& page, const ReportData& data, const ResultSet& set) {
     }
     if (!page.plots({plot}, true)) page.not_measured("no cell is ok");
 
-    Table table = table_of(set, "times", "Times of a frame, ms, " + set.title);
-    for (const Times& times : kTimes) {
-        for (const char* inner : {"mean", "median", "p90", "p99", "max", "low1"}) {
-            if (std::string_view(times.key) != "frame_ms" && std::string_view(inner) != "median" &&
-                std::string_view(inner) != "max") {
-                continue;
-            }
-            table.columns.push_back(
-                {fmt::format("{} {}", times.title, inner), fmt::format("{}.{}", times.key, inner)});
-        }
-    }
-    table.columns.push_back({"over budget, ms", "jank_ms", true,
-                             "sum over the frames of what goes over the scenario's budget"});
-    for (const CellGroup& group : set.groups) {
-        std::vector<Field>& row = table.rows.emplace_back();
-        row.push_back(text_field(group.label));
-        for (std::size_t i = 1; i + 1 < table.columns.size(); ++i) {
-            const std::string& field = table.columns[i].field;
-            const std::size_t dot = field.find('.');
-            row.push_back(number_field(
-                figure(group, field.substr(0, dot).c_str(), field.substr(dot + 1).c_str()), 3));
-        }
-        row.push_back(number_field(figure(group, "jank_ms"), 1));
-    }
-    page.table(table);
+    page.table(figure_table(set, "times", "Times of a frame, ms, " + set.title, kTimes));
 }
 
 }  // namespace lodbench::report::html

@@ -142,9 +142,7 @@ void add_trade(Page& page, const ReportData& data, const ResultSet& set) {
         page.not_measured("no cell has a pixel error (--no-truth, or every cell failed)");
         return;
     }
-    const bool realtime = std::ranges::any_of(set.groups, [](const CellGroup& group) {
-        return figure(group, "pixel_error_realtime_px", "p999").has_value();
-    });
+    const bool realtime = any_has(set, "pixel_error_realtime_px", "p999");
     page.paragraph(
         fmt::format(
             "Down and left is better. The settings of a method are joined by a line; ringed "

@@ -20,32 +20,26 @@ constexpr const char* kNoTruth = "the truth was left out (--no-truth), or every 
 
 void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
     page.heading(3, "What claimed bounds are worth", set.id + "-bounds");
-    Plot plot;
-    plot.kind = Plot::Kind::bars;
-    plot.id = set.id + "-honesty";
-    plot.title = "Greatest screen error over claimed bound";
-    plot.x_title = "measured / claimed; above 1 the claim does not hold";
-    plot.y_title = "method";
-    plot.can_be_logarithmic = true;
-    plot.reference = 1;
     Series series{"bound honesty"};
-    std::vector<std::string> silent;
+    std::vector<std::size_t> claiming;
+    std::string silent;
     for (const std::size_t i : choose_groups(set, kMostBars)) {
         const CellGroup& group = set.groups[i];
         const auto honesty = figure(group, "bound_honesty");
         if (!honesty) {
-            silent.push_back(group.label);
+            silent += (silent.empty() ? "" : ", ") + group.label;
             continue;
         }
-        series.marks.push_back({*honesty, double(plot.categories.size())});
-        plot.categories.push_back({group.label, group.method, data.color_of(group)});
+        series.marks.push_back({*honesty, double(claiming.size())});
+        claiming.push_back(i);
     }
+    Plot plot = bars_of(data, set, "honesty", "Greatest screen error over claimed bound",
+                        "measured / claimed; above 1 the claim does not hold", claiming);
+    plot.reference = 1;
     const bool drawn = !series.marks.empty();
     plot.series.push_back(std::move(series));
     if (drawn && !silent.empty()) {
-        std::string names;
-        for (const std::string& name : silent) names += (names.empty() ? "" : ", ") + name;
-        plot.notes.push_back("No bound is claimed, or none was measured, for: " + names + ".");
+        plot.notes.push_back("No bound is claimed, or none was measured, for: " + silent + ".");
     }
     if (!drawn || !page.plots({plot}, true)) {
         page.not_measured("no method here claims a bound, or the truth was left out");
