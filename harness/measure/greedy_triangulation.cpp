@@ -33,6 +33,62 @@ std::int64_t ceiling_of(std::int64_t a, std::int64_t b) {
     return -floor_of(-a, b);
 }
 
+/// Which triangles of samples reach into a camera's frustum.
+class Frustum {
+public:
+    Frustum(const ReferenceTerrain& terrain, const Camera& camera)
+        : terrain_(terrain),
+          box_in_view_(camera, kSlack),
+          planes_(camera.frustum_planes()),
+          eye_(camera.position) {}
+
+    [[nodiscard]] bool may_hold(const SampleRect& rect) const {
+        const HeightInterval range = terrain_.range(rect);
+        const glm::dvec2 south_west =
+            terrain_.info().position(rect.row + rect.rows - 1, rect.column);
+        const glm::dvec2 north_east =
+            terrain_.info().position(rect.row, rect.column + rect.columns - 1);
+        return box_in_view_({south_west, range.low}, {north_east, range.high});
+    }
+
+    /// Whether the triangle of three samples is not wholly outside one plane of the frustum.
+    [[nodiscard]] bool holds(const std::array<Delaunay::Vertex, 3>& v) const {
+        std::array<glm::dvec3, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i) corners[i] = terrain_.sample(v[i].y, v[i].x) - eye_;
+        return std::ranges::none_of(planes_, [&](const glm::dvec4& plane) {
+            return std::ranges::all_of(corners, [&](const glm::dvec3& corner) {
+                return glm::dot(glm::dvec3(plane), corner) + plane.w < 0;
+            });
+        });
+    }
+
+    [[nodiscard]] std::uint64_t full_grid() const {
+        constexpr int kBlock = 32;
+        const TerrainInfo& info = terrain_.info();
+        std::uint64_t count = 0;
+        for (int row = 0; row < info.rows - 1; row += kBlock) {
+            for (int column = 0; column < info.columns - 1; column += kBlock) {
+                const int south = std::min(row + kBlock, info.rows - 1);
+                const int east = std::min(column + kBlock, info.columns - 1);
+                if (!may_hold({row, column, south - row + 1, east - column + 1})) continue;
+                for (int y = row; y < south; ++y) {
+                    for (int x = column; x < east; ++x) {
+                        count += std::uint64_t(holds({{{x, y}, {x, y + 1}, {x + 1, y + 1}}}));
+                        count += std::uint64_t(holds({{{x, y}, {x + 1, y + 1}, {x + 1, y}}}));
+                    }
+                }
+            }
+        }
+        return count;
+    }
+
+private:
+    const ReferenceTerrain& terrain_;
+    BoxInView box_in_view_;
+    std::array<glm::dvec4, 5> planes_;
+    glm::dvec3 eye_;
+};
+
 class Greedy {
 public:
     Greedy(const ReferenceTerrain& terrain, const Camera& camera, double target_px,
@@ -43,9 +99,7 @@ public:
           columns_(terrain.info().columns),
           delaunay_(columns_ - 1, terrain.info().rows - 1),
           pixels_(camera),
-          box_in_view_(camera, kSlack),
-          planes_(camera.frustum_planes()),
-          eye_(camera.position),
+          frustum_(terrain, camera),
           errors_(terrain.heights().size(), kOutOfView) {
         const TerrainInfo& info = terrain.info();
         corner_ = pixels_.local({info.position(0, 0), 0});
@@ -118,15 +172,6 @@ private:
         }
     }
 
-    [[nodiscard]] bool may_be_in_view(const SampleRect& rect) const {
-        const HeightInterval range = terrain_.range(rect);
-        const glm::dvec2 south_west =
-            terrain_.info().position(rect.row + rect.rows - 1, rect.column);
-        const glm::dvec2 north_east =
-            terrain_.info().position(rect.row, rect.column + rect.columns - 1);
-        return box_in_view_({south_west, range.low}, {north_east, range.high});
-    }
-
     /// Notes the error of each sample of the triangle.
     [[nodiscard]] Worst evaluate(const Delaunay::Triangle& triangle) {
         std::array<Delaunay::Vertex, 3> v;
@@ -136,7 +181,7 @@ private:
         const auto [west, east] = std::minmax({v[0].x, v[1].x, v[2].x});
         const auto [north, south] = std::minmax({v[0].y, v[1].y, v[2].y});
         Worst worst;
-        const bool seen = may_be_in_view({north, west, south - north + 1, east - west + 1});
+        const bool seen = frustum_.may_hold({north, west, south - north + 1, east - west + 1});
         // The plane through the corners: z = first + slope_x (x - x0) + slope_y (y - y0).
         const double first = height(v[0]), z1 = height(v[1]) - first, z2 = height(v[2]) - first;
         const double x1 = v[1].x - v[0].x, y1 = v[1].y - v[0].y;
@@ -189,37 +234,6 @@ private:
             v, [&](const Delaunay::Vertex& corner) { return corner.x == x && corner.y == y; });
     }
 
-    /// Whether the triangle of three samples is not wholly outside one plane of the frustum.
-    [[nodiscard]] bool in_view(const std::array<Delaunay::Vertex, 3>& v) const {
-        std::array<glm::dvec3, 3> corners;
-        for (std::size_t i = 0; i < 3; ++i) corners[i] = terrain_.sample(v[i].y, v[i].x) - eye_;
-        return std::ranges::none_of(planes_, [&](const glm::dvec4& plane) {
-            return std::ranges::all_of(corners, [&](const glm::dvec3& corner) {
-                return glm::dot(glm::dvec3(plane), corner) + plane.w < 0;
-            });
-        });
-    }
-
-    [[nodiscard]] std::uint64_t full_grid_in_view() const {
-        constexpr int kBlock = 32;
-        const TerrainInfo& info = terrain_.info();
-        std::uint64_t count = 0;
-        for (int row = 0; row < info.rows - 1; row += kBlock) {
-            for (int column = 0; column < columns_ - 1; column += kBlock) {
-                const int south = std::min(row + kBlock, info.rows - 1);
-                const int east = std::min(column + kBlock, columns_ - 1);
-                if (!may_be_in_view({row, column, south - row + 1, east - column + 1})) continue;
-                for (int y = row; y < south; ++y) {
-                    for (int x = column; x < east; ++x) {
-                        count += std::uint64_t(in_view({{{x, y}, {x, y + 1}, {x + 1, y + 1}}}));
-                        count += std::uint64_t(in_view({{{x, y}, {x + 1, y + 1}, {x + 1, y}}}));
-                    }
-                }
-            }
-        }
-        return count;
-    }
-
     [[nodiscard]] double p999() const {
         std::vector<float> errors;
         errors.reserve(in_view_);
@@ -235,7 +249,6 @@ private:
         GreedyTriangulation result;
         result.max_px = greatest;
         result.p999_px = p999();
-        result.full_in_view = full_grid_in_view();
         for (const Delaunay::Vertex& vertex : delaunay_.vertices()) {
             result.vertices.push_back({vertex.y, vertex.x});
         }
@@ -244,7 +257,7 @@ private:
             for (std::size_t i = 0; i < 3; ++i) {
                 v[i] = delaunay_.vertices()[std::size_t(triangle.vertices[i])];
             }
-            result.in_view += std::uint64_t(in_view(v));
+            result.in_view += std::uint64_t(frustum_.holds(v));
             // Rows run southward: the other way round, seen from above.
             result.triangles.push_back({std::uint32_t(triangle.vertices[0]),
                                         std::uint32_t(triangle.vertices[2]),
@@ -261,9 +274,7 @@ private:
     int columns_;
     Delaunay delaunay_;
     PixelProjection pixels_;
-    BoxInView box_in_view_;
-    std::array<glm::dvec4, 5> planes_;
-    glm::dvec3 eye_;
+    Frustum frustum_;
     glm::dvec3 corner_, east_, south_, up_;        ///< sample (0, 0) at height 0, and steps from it
     std::vector<float> errors_;                    ///< pixels, of each sample
     std::uint64_t in_view_ = 0, over_target_ = 0;  ///< samples
@@ -281,6 +292,10 @@ GreedyTriangulation greedy_triangulation(const ReferenceTerrain& terrain, const 
             fmt::format("greedy_triangulation: a target of {} px, expected at least 0", target_px));
     }
     return Greedy(terrain, camera, target_px, bound).run();
+}
+
+std::uint64_t full_grid_in_view(const ReferenceTerrain& terrain, const Camera& camera) {
+    return Frustum(terrain, camera).full_grid();
 }
 
 CapturedSurface surface_of(const GreedyTriangulation& triangulation,

@@ -31,7 +31,6 @@ struct GreedyTriangulation {
     double max_px = 0;          ///< greatest screen error of a sample in view
     double p999_px = 0;         ///< nearest-rank P99.9 of those errors
     std::uint64_t in_view = 0;  ///< triangles that are not wholly outside a plane of the frustum
-    std::uint64_t full_in_view = 0;  ///< the same of the full grid, two a cell
 };
 
 /// What is to be no greater than a target: the errors' maximum, or their nearest-rank P99.9.
@@ -44,6 +43,10 @@ enum class ErrorBound { max, p999 };
 [[nodiscard]] GreedyTriangulation greedy_triangulation(const ReferenceTerrain& terrain,
                                                        const Camera& camera, double target_px,
                                                        ErrorBound bound = ErrorBound::max);
+
+/// The triangles of the full grid, two a cell, that are likewise in view.
+[[nodiscard]] std::uint64_t full_grid_in_view(const ReferenceTerrain& terrain,
+                                              const Camera& camera);
 
 /// Its triangles as if a method had drawn them, to be measured like any other.
 [[nodiscard]] CapturedSurface surface_of(const GreedyTriangulation& triangulation,

@@ -186,7 +186,7 @@ Fewest TruthMeter::find_fewest(double target_px, ErrorBound bound) const {
     (void)measure_samples(terrain_, now_.camera, displacements, kInfinity, all, visible);
     const ErrorSummary errors = all.summary(false);
     const auto measured = bound == ErrorBound::max ? errors.max : errors.p999;
-    return {target_px, greedy.in_view, greedy.full_in_view, measured.value_or(0)};
+    return {target_px, greedy.in_view, measured.value_or(0)};
 }
 
 void TruthMeter::find_economy(std::uint64_t triangles) {
@@ -196,6 +196,7 @@ void TruthMeter::find_economy(std::uint64_t triangles) {
     Economy& economy = total_.economy.emplace_back();
     economy.frame = now_.frame;
     economy.triangles = triangles;
+    economy.full = full_grid_in_view(terrain_, now_.camera);
     economy.max = find_fewest(*errors.max_covered, ErrorBound::max);
     if (std::isfinite(*errors.p999)) {
         economy.p999 = find_fewest(*errors.p999, ErrorBound::p999);

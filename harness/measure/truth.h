@@ -52,17 +52,20 @@ struct WorstPlace {
 struct Fewest {
     double target_px = 0;      ///< what the method's own surface measured
     std::uint64_t greedy = 0;  ///< triangles that reach into the frustum
-    std::uint64_t full = 0;    ///< of the full grid, likewise
-    double greedy_px = 0;      ///< the error of the greedy ones, measured like a method's
-    [[nodiscard]] std::uint64_t minimal() const { return std::min(greedy, full); }
+    double greedy_px = 0;      ///< their error, measured like a method's
 };
 
 /// A frame's triangles beside those that would have done at the same measured screen error.
 struct Economy {
     int frame = 0;
     std::uint64_t triangles = 0;  ///< that the method drew, with an area
+    std::uint64_t full = 0;       ///< of the full grid, that reach into the frustum
     Fewest max;                   ///< at its greatest error, uncovered samples apart
     std::optional<Fewest> p999;   ///< at its P99.9; nothing where uncovered samples reach into it
+    /// Of the greedy ones and the full grid the fewer.
+    [[nodiscard]] std::uint64_t minimal(const Fewest& fewest) const {
+        return std::min(fewest.greedy, full);
+    }
 };
 
 /// Over all measured frames. Counts are totals unless they say otherwise.

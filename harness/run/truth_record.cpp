@@ -55,15 +55,15 @@ Json::Value errors(const measure::ErrorSummary& summary,
     return json;
 }
 
-Json::Value fewest(const std::optional<measure::Fewest>& fewest, std::uint64_t triangles) {
-    if (!fewest) return Json::Value::null;
+Json::Value fewest(const measure::Economy& economy, const measure::Fewest& fewest) {
+    const std::uint64_t minimal = economy.minimal(fewest);
     Json::Value json;
-    json["target_px"] = number(fewest->target_px);
-    json["minimal_triangles"] = count(fewest->minimal());
-    json["greedy_triangles"] = count(fewest->greedy);
-    json["greedy_px"] = number_or_inf(fewest->greedy_px);
-    json["ratio"] = fewest->minimal() > 0 ? number(double(triangles) / double(fewest->minimal()))
-                                          : Json::Value::null;
+    json["target_px"] = number(fewest.target_px);
+    json["minimal_triangles"] = count(minimal);
+    json["greedy_triangles"] = count(fewest.greedy);
+    json["greedy_px"] = number_or_inf(fewest.greedy_px);
+    json["ratio"] =
+        minimal > 0 ? number(double(economy.triangles) / double(minimal)) : Json::Value::null;
     return json;
 }
 
@@ -99,9 +99,9 @@ Json::Value truth_record(const measure::TruthSummary& truth) {
         Json::Value figures;
         figures["frame"] = frame.frame;
         figures["triangles"] = count(frame.triangles);
-        figures["full_triangles"] = count(frame.max.full);
-        figures["p999"] = fewest(frame.p999, frame.triangles);
-        figures["max"] = fewest(frame.max, frame.triangles);
+        figures["full_triangles"] = count(frame.full);
+        figures["p999"] = frame.p999 ? fewest(frame, *frame.p999) : Json::Value::null;
+        figures["max"] = fewest(frame, frame.max);
         json["economy"].append(figures);
     }
     Json::Value& silhouette = json["silhouette_px"];

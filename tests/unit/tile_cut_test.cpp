@@ -11,10 +11,12 @@
 #include "tile_quadtree/tile_cut.h"
 #include "tile_quadtree/tile_mesh.h"
 #include "tile_quadtree/visible_tiles.h"
+#include "unit/pyramid_tiles.h"
 
 namespace lodbench::tile_quadtree {
 namespace {
 
+using test::all_tiles;
 using test::FakeTerrain;
 
 constexpr std::pair<int, int> kSizes[] = {{2, 2},     {65, 65},     {66, 65},
@@ -26,18 +28,6 @@ std::set<std::size_t> indices_of(const TileCatalogue& catalogue, const std::vect
     for (const TileId& tile : tiles) found.insert(catalogue.index(tile));
     EXPECT_EQ(found.size(), tiles.size()) << "a tile twice";
     return found;
-}
-
-std::vector<TileId> all_tiles(const TilePyramid& pyramid) {
-    std::vector<TileId> tiles;
-    for (int level = 0; level < pyramid.levels(); ++level) {
-        for (int row = 0; row < pyramid.rows(level); ++row) {
-            for (int column = 0; column < pyramid.columns(level); ++column) {
-                tiles.push_back({level, row, column});
-            }
-        }
-    }
-    return tiles;
 }
 
 TEST(VisibleTiles, of_one_tree_and_of_two_layers_are_those_that_touch_the_region) {

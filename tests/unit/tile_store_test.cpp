@@ -18,6 +18,7 @@
 #include "terrain/open_terrain.h"
 #include "terrain/tile_store_check.h"
 #include "terrain/tile_store_writer.h"
+#include "unit/pyramid_tiles.h"
 #include "unit/tile_store_files.h"
 
 namespace lodbench::test {
@@ -29,18 +30,6 @@ using testing::HasSubstr;
 
 constexpr std::pair<int, int> kSizes[] = {{2, 2},    {2, 300},  {65, 65},   {66, 65},  {64, 129},
                                           {100, 70}, {129, 66}, {257, 257}, {200, 65}, {131, 391}};
-
-std::vector<TileId> tiles_of(const TilePyramid& pyramid) {
-    std::vector<TileId> tiles;
-    for (int level = 0; level < pyramid.levels(); ++level) {
-        for (int row = 0; row < pyramid.rows(level); ++row) {
-            for (int column = 0; column < pyramid.columns(level); ++column) {
-                tiles.push_back({level, row, column});
-            }
-        }
-    }
-    return tiles;
-}
 
 bool same_bits(std::span<const float> one, std::span<const float> other) {
     return std::ranges::equal(one, other, [](float a, float b) {
@@ -59,7 +48,7 @@ void expect_equal(const Terrain& store, const HeightField& field) {
     EXPECT_EQ(store.info().void_count, field.info().void_count);
     EXPECT_EQ(store.info().checksum, field.info().checksum);
     std::vector<float> one(kTileSampleCount), other(kTileSampleCount);
-    for (const TileId& tile : tiles_of(field.tiles())) {
+    for (const TileId& tile : all_tiles(field.tiles())) {
         SCOPED_TRACE(terrain::name_of(tile));
         store.read_tile(tile, one);
         field.read_tile(tile, other);
@@ -189,7 +178,7 @@ TEST_F(TileStore, tiles_lie_in_z_order_level_upon_level_from_the_coarsest) {
         EXPECT_EQ(place({0, order[i].first, order[i].second}), 9 + i);
     }
     std::set<std::uint64_t> places;
-    for (const TileId& tile : tiles_of(field.tiles())) places.insert(place(tile));
+    for (const TileId& tile : all_tiles(field.tiles())) places.insert(place(tile));
     EXPECT_EQ(places.size(), field.tiles().count());
     EXPECT_EQ(*places.rbegin() + 1, field.tiles().count());
 }
@@ -200,7 +189,7 @@ TEST_F(TileStore, reads_nothing_that_nobody_asks_for) {
     const StoredTerrain store(file());
     constexpr std::uint64_t kTile = 65 * 65 * 2;
     EXPECT_EQ(store.bytes_read(), 0U);
-    for (const TileId& tile : tiles_of(field.tiles())) (void)store.tile_summary(tile);
+    for (const TileId& tile : all_tiles(field.tiles())) (void)store.tile_summary(tile);
     EXPECT_EQ(store.bytes_read(), 0U);
     std::vector<float> heights(kTileSampleCount);
     store.read_tile({1, 0, 1}, heights);
@@ -231,7 +220,7 @@ TEST_F(TileStore, serves_several_threads_at_once) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
         threads.emplace_back([&, seed] {
             base::SplitMix64 random(seed);
-            const std::vector<TileId> tiles = tiles_of(field.tiles());
+            const std::vector<TileId> tiles = all_tiles(field.tiles());
             std::vector<float> a(kTileSampleCount), b(kTileSampleCount);
             for (int i = 0; i < 200; ++i) {
                 if (i % 2 == 0) {
