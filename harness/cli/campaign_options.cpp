@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "api/error.h"
 #include "cli/options.h"
 #include "report/results.h"
 
@@ -46,6 +47,16 @@ void CampaignOptions::add_to(CLI::App& command) {
         ->check(CLI::Range(1, 10000));
     add_device(command, request.device);
     command.add_flag("--json", json, "print one JSON object instead of the table");
+}
+
+void CampaignOptions::add_resume(CLI::App& command, const char* help) {
+    command.add_flag("--resume", request.resume, help);
+}
+
+void CampaignOptions::require_folder_to_resume() const {
+    if (request.resume && request.out.empty()) {
+        throw InputError("--resume: which run? Name its folder with --out DIR");
+    }
 }
 
 void CampaignOptions::finish() {

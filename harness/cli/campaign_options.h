@@ -19,6 +19,10 @@ public:
     /// Adds --method, --set, --out, --plugin-dir, --frames, --size, --seed, --repeat, --device and
     /// --json.
     void add_to(CLI::App& command);
+    /// Adds --resume, for commands that can go on with what they began.
+    void add_resume(CLI::App& command, const char* help);
+    /// Throws InputError for --resume without --out.
+    void require_folder_to_resume() const;
     /// Once the command line is read: seed, command line and, where none is named, the folder.
     void finish();
 

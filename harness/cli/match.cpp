@@ -84,6 +84,7 @@ std::string search_text(const std::vector<run::MatchedMethod>& methods) {
 
 int match(Options& options) {
     const report::MatchTarget target = read_target(options);
+    options.require_folder_to_resume();
     options.finish();
     Progress progress;
     const run::MatchOutcome outcome = run::match(
@@ -139,6 +140,7 @@ void add_match(CLI::App& app, int& status) {
         ->capture_default_str()
         ->check(CLI::Range(2, 100));
     options->add_to(*command);
+    options->add_resume(*command, "goes on with what was begun in --out by the same command");
     command->callback([options, &status] { status = match(*options); });
 }
 

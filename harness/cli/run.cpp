@@ -32,9 +32,7 @@ void print_outcome(const run::CampaignOutcome& outcome, bool json) {
 
 int fly(Options& options) {
     run::RunRequest& request = options.request;
-    if (request.resume && request.out.empty()) {
-        throw InputError("--resume: which run? Name its folder with --out DIR");
-    }
+    options.require_folder_to_resume();
     options.finish();
     if (options.no_truth) request.overrides.truth = false;
     if (request.resume && !request.names_cells() &&
@@ -63,8 +61,7 @@ void add_run(CLI::App& app, int& status) {
     options->add_to(*command);
     command->add_flag("--no-truth", options->no_truth,
                       "only times and counts: leaves out screen error, cracks and popping");
-    command->add_flag("--resume", options->request.resume,
-                      "finish what is missing in --out, as the run began");
+    options->add_resume(*command, "finish what is missing in --out, as the run began");
     command->callback([options, &status] { status = fly(*options); });
 }
 

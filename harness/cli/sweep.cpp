@@ -100,6 +100,7 @@ int sweep(Options& options) {
     std::map<std::string, std::string> knobs;
     spread_knobs(options, find_plugins(options.request.plugin_dirs), knobs);
     options.request.overrides.truth = true;
+    options.require_folder_to_resume();
     options.finish();
     Progress progress;
     const run::CampaignOutcome outcome =
@@ -129,6 +130,7 @@ void add_sweep(CLI::App& app, int& status) {
     command->add_option("SCENARIO", options->request.scenarios,
                         "scenario files; none: the demo over Puget Sound");
     options->add_to(*command);
+    options->add_resume(*command, "goes on with what was begun in --out by the same command");
     add_repeated(*command, "--knob-values", options->knob_values,
                  "METHOD=VALUE[,VALUE...]: values of its quality knob; else each twice the one "
                  "before, around the default");

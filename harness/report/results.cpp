@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -61,7 +62,6 @@ int write_and_sync(int number, std::string_view text) {
 }  // namespace
 
 void write_whole(const fs::path& path, std::string_view text) {
-    const fs::path temporary = path.parent_path() / ("." + path.filename().string() + ".tmp");
     // Renaming over a device or a pipe would take it from everyone.
     std::error_code ignored;
     if (const fs::file_status status = fs::status(path, ignored);
@@ -71,9 +71,14 @@ void write_whole(const fs::path& path, std::string_view text) {
                         "place with --out",
                         path.string()));
     }
+    // A name of this call's own: another writer's file, or a link that waits there, is not touched.
+    static std::atomic<unsigned> count = 0;
+    const fs::path temporary =
+        path.parent_path() /
+        fmt::format(".{}.{}-{}.tmp", path.filename().string(), getpid(), count++);
     int error = 0;
     {
-        File file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+        File file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
         if (!file.good()) fail("write", path, errno);
         error = write_and_sync(file.number(), text);
         if (!file.close() && error == 0) error = errno;
@@ -89,7 +94,7 @@ void append_line(const fs::path& path, std::string_view line) {
     if (line.find('\n') != line.npos) {
         throw ContractError("append_line: expected one line, found a newline in it");
     }
-    const File file(path, O_WRONLY | O_CREAT | O_APPEND);
+    const File file(path, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
     if (!file.good()) fail("write", path, errno);
     struct stat before {};
     if (fstat(file.number(), &before) != 0) fail("read the size of", path, errno);

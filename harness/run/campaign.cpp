@@ -80,16 +80,10 @@ public:
         : request_(request),
           program_(program),
           observer_(observer),
-          folder_(fs::absolute(request.out)) {
+          resumed_(resumes(request)),
+          folder_(fs::absolute(request.out).lexically_normal()) {
         outcome_.out = folder_.path();
-        const bool known = fs::exists(folder_.path() / "run.json");
-        if (folder_.holds_a_run() && !request.resume) {
-            throw InputError(
-                fmt::format("{0}: this folder already holds a run; finish it with `lodbench run "
-                            "--resume --out {0}`, or choose another with --out",
-                            folder_.path().string()));
-        }
-        if (known) {
+        if (resumed_) {
             take_up();
         } else {
             discarding_what_is_refused([&] { start(); });
@@ -113,6 +107,19 @@ public:
     }
 
 private:
+    /// Whether the folder's run is taken up. Throws InputError where it holds one and --resume is
+    /// not given.
+    static bool resumes(const RunRequest& request) {
+        const bool known = holds_a_run(request.out);
+        if (known && !request.resume) {
+            throw InputError(
+                fmt::format("{0}: this folder already holds a run; finish it with `lodbench run "
+                            "--resume --out {0}`, or choose another with --out",
+                            fs::absolute(request.out).string()));
+        }
+        return known;
+    }
+
     /// Bad input that is found before the first cell is finished leaves nothing behind: the same
     /// command can be given again once the input is mended.
     template <typename Work>
@@ -120,7 +127,7 @@ private:
         try {
             work();
         } catch (const InputError&) {
-            if (outcome_.cells.empty()) folder_.discard();
+            if (!resumed_ && outcome_.cells.empty()) folder_.discard();
             throw;
         }
     }
@@ -151,11 +158,26 @@ private:
             list_plugins(plugin_folders(request_.plugin_dirs));
         plan_ = make_plan(request_, plugins);
         outcome_.warnings = plan_.warnings;
-        for (const scenario::Scenario& scenario : plan_.scenarios) {
-            report::write_whole(scenario_file(scenario.name), scenario.text);
-        }
+        claim_names();
         run_ = run_context(request_, plan_, plugins);
-        write_run();
+        write_run();  // first of all: it says whose folder this is
+        folder_.make_parts();
+        write_scenarios(run_["scenarios"]);
+    }
+
+    /// Copies of the scenarios' files, which the cells read.
+    void write_scenarios(const Json::Value& scenarios) const {
+        for (const Json::Value& scenario : scenarios) {
+            const fs::path file = scenario_file(scenario["name"].asString());
+            if (!fs::exists(file)) report::write_whole(file, scenario["text"].asString());
+        }
+    }
+
+    void claim_names() {
+        std::vector<std::string> names;
+        for (const PlannedCell& cell : plan_.cells) names.push_back(cell.spec.id);
+        for (const scenario::Scenario& scenario : plan_.scenarios) names.push_back(scenario.name);
+        folder_.claim(std::move(names));
     }
 
     void take_up() {
@@ -169,6 +191,8 @@ private:
                 report::kSchemaVersion));
         }
         try {
+            folder_.make_parts();
+            write_scenarios(run_["scenarios"]);  // a run killed early may not have come to it
             plan_ = plan_from_json(run_, folder_.path());
         } catch (const Json::Exception& error) {
             throw InputError(fmt::format("{}: {}", file.string(), error.what()));
@@ -176,6 +200,7 @@ private:
         refuse_other_request(file);
         for (const Json::Value& warning : run_["warnings"])
             outcome_.warnings.push_back(warning.asString());
+        claim_names();
         outcome_.cells = folder_.repair();
         for (const Json::Value& cell : outcome_.cells) finished_.insert(cell["cell"].asString());
     }
@@ -261,6 +286,11 @@ private:
     }
 
     [[nodiscard]] fs::path scenario_file(const std::string& name) const {
+        // A damaged file must not send us out of the folder.
+        if (name.empty() || name.find('/') != name.npos) {
+            throw InputError(fmt::format("{}: '{}' is no name of a scenario",
+                                         (folder_.path() / "run.json").string(), name));
+        }
         return folder_.path() / "scenarios" / (name + ".toml");
     }
 
@@ -276,6 +306,7 @@ private:
     const RunRequest& request_;
     const fs::path& program_;
     CampaignObserver& observer_;
+    const bool resumed_;
     RunFolder folder_;
     Plan plan_;
     Json::Value run_;

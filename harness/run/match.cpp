@@ -8,6 +8,7 @@
 #include "api/error.h"
 #include "report/json.h"
 #include "report/results.h"
+#include "run/run_folder.h"
 
 namespace lodbench::run {
 
@@ -62,6 +63,47 @@ private:
     std::set<std::string> told_;
 };
 
+void write_record(const fs::path& file, const report::MatchRecord& record) {
+    report::write_whole(file, report::to_text(to_json(record), true) + "\n");
+}
+
+/// The folder, locked. Says whose it is before the first probe: by a match.json that is as yet
+/// without methods. Throws InputError where the folder holds something else.
+RunFolder begin_search(const RunRequest& request, const report::MatchTarget& target) {
+    const fs::path file = request.out / "match.json";
+    if (!fs::exists(file)) {
+        if (holds_a_run(request.out)) {
+            throw InputError(
+                fmt::format("{}: the run in this folder was not begun by match; "
+                            "choose another with --out",
+                            request.out.string()));
+        }
+        RunFolder folder(fs::absolute(request.out).lexically_normal());
+        report::MatchRecord begun;
+        begun.target = target;
+        write_record(file, begun);
+        return folder;
+    }
+    if (!request.resume) {
+        throw InputError(
+            fmt::format("{}: there is already a match.json in this folder; go on with it by the "
+                        "same command and --resume, or choose another with --out",
+                        request.out.string()));
+    }
+    const report::MatchTarget begun =
+        report::read_match(report::parse_json(report::read_text(file), file.string()),
+                           file.string())
+            .target;
+    if (begun.words() != target.words() || begun.tolerance != target.tolerance) {
+        throw InputError(fmt::format(
+            "--resume: the search in {} has another target: {} within {} %, and now {} within {} "
+            "%; give the target that it began with",
+            file.string(), begun.words(), 100 * begun.tolerance, target.words(),
+            100 * target.tolerance));
+    }
+    return RunFolder(fs::absolute(request.out).lexically_normal());
+}
+
 }  // namespace
 
 report::MatchRecord match_record(const report::MatchTarget& target,
@@ -96,13 +138,6 @@ MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, i
     if (request.scenarios.size() > 1) {
         throw InputError("match: name one scenario; a knob that fits one flight fits no other");
     }
-    for (const char* taken : {"run.json", "cells.jsonl", "search", "match.json"}) {
-        if (!fs::exists(request.out / taken)) continue;
-        throw InputError(
-            fmt::format("{}: there is already a {} in this folder; choose another "
-                        "with --out",
-                        request.out.string(), taken));
-    }
     const std::vector<PluginListing> plugins = list_plugins(plugin_folders(request.plugin_dirs));
     const Plan plan = make_plan(request, plugins);
     MatchOutcome outcome;
@@ -114,6 +149,9 @@ MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, i
         require_one_setting(plan, info.id, method.knob);
     }
 
+    const bool fresh = !fs::exists(request.out / "match.json");
+    std::optional<RunFolder> folder = begin_search(request, target);
+
     const auto settings_of = [&request](const std::string& method) {
         std::vector<std::string> settings;
         std::ranges::copy_if(
@@ -122,6 +160,7 @@ MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, i
         return settings;
     };
     Quiet quiet(observer);
+    int probes_flown = 0;
     for (MatchedMethod& method : outcome.methods) {
         if (!method.knob) continue;
         int number = 0;
@@ -135,7 +174,15 @@ MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, i
             probe.overrides.repetitions = 1;
             probe.overrides.truth = of_the_truth;
             probe.overrides.economy.emplace();  // none
-            const CampaignOutcome flown = run_campaign(probe, program, quiet);
+            const CampaignOutcome flown = [&] {
+                try {
+                    return run_campaign(probe, program, quiet);
+                } catch (const InputError&) {
+                    if (fresh && probes_flown == 0) folder->discard();
+                    throw;
+                }
+            }();
+            ++probes_flown;
             if (!flown.error.empty()) throw EnvironmentError(flown.error);
             const Json::Value& cell = flown.cells.front();
             const auto measured = target.measured(cell);
@@ -181,9 +228,8 @@ MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, i
             fmt::format("match: no method could be flown; the last said: {}",
                         outcome.methods.empty() ? "" : outcome.methods.back().failure));
     }
-    report::write_whole(
-        request.out / "match.json",
-        report::to_text(to_json(match_record(target, outcome.methods)), true) + "\n");
+    write_record(request.out / "match.json", match_record(target, outcome.methods));
+    folder.reset();  // the campaign locks it for itself
     outcome.campaign = run_campaign(final, program, observer);
     return outcome;
 }

@@ -4,7 +4,6 @@
 #include <json/value.h>
 
 #include <filesystem>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -12,32 +11,50 @@
 
 namespace lodbench::run {
 
-/// Makes the folder and its lock. The lock is inherited by the cells' processes, so that nobody
-/// takes the folder over while a child of a killed run still breathes.
+/// A results folder is new, empty, or carries a run.json (or, while a match searches, a
+/// match.json) of lodbench. Anything else is refused, and so is a symbolic link. Throws InputError
+/// that names what is in the way. Makes and changes nothing.
+void refuse_foreign_folder(const std::filesystem::path& path);
+
+/// Whether the folder carries a run.json that is a regular file.
+[[nodiscard]] bool holds_a_run(const std::filesystem::path& folder);
+
+/// Makes the folder where it is absent, and locks it. Removes only files that bear a name which
+/// this run gives, and only folders that it made and that are empty.
 class RunFolder {
 public:
-    /// Throws EnvironmentError when the folder cannot be made or written, InputError when another
-    /// run holds it.
+    /// Throws EnvironmentError when the folder cannot be made or written, InputError when it is
+    /// foreign or another run holds it.
     explicit RunFolder(std::filesystem::path path);
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    [[nodiscard]] bool holds_a_run() const;
 
-    /// Takes back what this object and a run that was refused before its first cell have made; the
-    /// folder itself goes too where it holds nothing else.
+    /// The names that this run gives to files in its subfolders: NAME.* and NAME__*. They are the
+    /// ids of cells and the names of scenarios.
+    void claim(std::vector<std::string> names) { names_ = std::move(names); }
+    /// Makes the subfolders. Throws InputError where a link or a file stands in the place of one.
+    void make_parts();
+
+    /// Removes what a run that was refused before its first cell has made. Call it only where the
+    /// run began in this object: the folder was new or empty.
     void discard();
 
     /// The objects of cells.jsonl after a repair: a line that a killed writer left unfinished is
-    /// dropped, and with it temporary files and what belongs to no finished cell. Throws InputError
-    /// with file and line for what is no cell.
+    /// dropped, and so are its temporary files. Throws InputError with file and line for what is no
+    /// cell.
     [[nodiscard]] std::vector<Json::Value> repair();
 
     /// The frames' CSV first, then the cell's line: a cell that has a line is whole.
     void add_cell(const std::string& id, const Json::Value& record, const std::string& csv);
 
 private:
+    [[nodiscard]] std::vector<std::filesystem::path> own_files(bool temporary_only) const;
+    void lock();
+
     std::filesystem::path path_;
-    base::FileDescriptor lock_;
+    std::vector<std::string> names_;
+    std::vector<std::filesystem::path> made_;  // folders, outermost first
+    base::FileDescriptor lock_;                // closed by exec: no cell can hold the folder
 };
 
 }  // namespace lodbench::run
