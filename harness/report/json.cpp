@@ -8,8 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 
 #include "api/error.h"
+#include "base/hash.h"
+#include "base/printable.h"
 
 namespace lodbench::report {
 
@@ -22,6 +25,7 @@ const Json::Value& member(const Json::Value& object, const char* key, const std:
     return object[key];
 }
 
+constexpr const char* kChecksum = "checksum";
 }  // namespace
 
 Json::Value parse_json(std::string_view text, const std::string& where) {
@@ -50,6 +54,35 @@ std::string to_text(const Json::Value& value, bool indented) {
     builder["precision"] = 15;  // 0.1 stays 0.1
     builder["emitUTF8"] = true;
     return Json::writeString(builder, value);
+}
+
+std::string checksum_of(std::string_view text) {
+    base::WordHash hash;
+    hash.add(std::as_bytes(std::span(text)));
+    hash.add(text.size());  // zeros at the end count too
+    return fmt::format("{:016x}", hash.value());
+}
+
+std::string seal(const Json::Value& object, bool indented) {
+    std::string text = to_text(object, indented);
+    text.erase(text.find_last_not_of("\n }") + 1);
+    const char* const form = indented ? ",\n  \"{}\": \"{}\"\n}}" : ",\"{}\":\"{}\"}}";
+    return text + fmt::format(fmt::runtime(form), kChecksum, checksum_of(text));
+}
+
+Json::Value parse_sealed(std::string_view text, const std::string& where) {
+    Json::Value value = parse_json(text, where);
+    if (!value.isObject() || !value.isMember(kChecksum)) return value;
+    const std::string found = get_string(value, kChecksum, where);
+    // It is the last member: what is before its comma was sealed.
+    const std::size_t key = text.rfind(fmt::format("\"{}\"", kChecksum));
+    const std::string expected = checksum_of(text.substr(0, text.rfind(',', key)));
+    if (found != expected) {
+        throw InputError(fmt::format("{}: the checksum is {}, and {} is what the content gives; {}",
+                                     where, base::printable(found), expected, kCopyAgain));
+    }
+    value.removeMember(kChecksum);
+    return value;
 }
 
 Json::Value number(std::optional<double> value) {

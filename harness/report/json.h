@@ -15,6 +15,17 @@ namespace lodbench::report {
 /// On one line, or indented by two blanks. Numbers that are not finite become null: JSON has none.
 [[nodiscard]] std::string to_text(const Json::Value& value, bool indented = false);
 
+/// 16 hex digits over the bytes of a text.
+[[nodiscard]] std::string checksum_of(std::string_view text);
+
+/// to_text of an object that is not empty, with "checksum" as its last member: that of the text
+/// before it.
+[[nodiscard]] std::string seal(const Json::Value& object, bool indented = false);
+
+/// parse_json of what `seal` gave, without the member. Throws InputError as well where the text is
+/// not what was sealed. A text without a checksum, as older versions wrote it, is taken as it is.
+[[nodiscard]] Json::Value parse_sealed(std::string_view text, const std::string& where);
+
 /// Null for an absent or non-finite number.
 [[nodiscard]] Json::Value number(std::optional<double> value);
 

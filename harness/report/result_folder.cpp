@@ -152,7 +152,7 @@ void read_cells(ResultFolder& folder) {
     std::size_t begin = 0;
     for (std::size_t end = 0; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
         const std::string where = fmt::format("{}:{}", file.string(), line++);
-        Json::Value cell = parse_json(std::string_view(text).substr(begin, end - begin), where);
+        Json::Value cell = parse_sealed(std::string_view(text).substr(begin, end - begin), where);
         check_cell(cell, where);
         if (!ids.insert(cell["cell"].asString()).second) {
             throw InputError(fmt::format("{}: cell '{}' is there twice; remove one of its lines",
@@ -204,7 +204,7 @@ std::vector<NeededTiles> read_needed(const Json::Value& flight, const std::strin
 
 FlightRecord read_flight(const fs::path& file, const fs::path& picture) {
     const std::string where = file.string();
-    const Json::Value json = parse_json(read_text(file), where);
+    const Json::Value json = parse_sealed(read_text(file), where);
     check_schema(json, file);
     const auto pair = [&](const char* key) {
         const Json::Value& value = get_array(json, key, where);
@@ -257,7 +257,7 @@ void read_search(ResultFolder& folder) {
     const fs::path file = folder.path / "match.json";
     std::error_code absent;
     if (!fs::is_regular_file(file, absent)) return;
-    const Json::Value json = parse_json(read_text(file), file.string());
+    const Json::Value json = parse_sealed(read_text(file), file.string());
     check_schema(json, file);
     folder.match = read_match(json, file.string());
 }
@@ -312,6 +312,16 @@ FrameTable parse_frame_table(std::string_view csv, const std::string& where) {
     return table;
 }
 
+void expect_frames(const Json::Value& cell, std::string_view csv, const std::string& where) {
+    const Json::Value& written = cell["frames_checksum"];
+    if (written.isNull()) return;  // of an older version
+    const std::string found = checksum_of(csv);
+    if (written == found) return;
+    throw InputError(fmt::format("{}: its checksum is {}, and cells.jsonl says {}; {}", where,
+                                 found, written.isString() ? written.asString() : "no text",
+                                 kCopyAgain));
+}
+
 ResultFolder read_result_folder(const fs::path& path) {
     ResultFolder folder;
     folder.path = path;
@@ -327,6 +337,7 @@ ResultFolder read_result_folder(const fs::path& path) {
         const fs::path file = path / "frames" / (id + ".csv");
         const std::string csv =
             read_input(file, "cells.jsonl names its cell: copy the folder again, with its frames");
+        expect_frames(cell, csv, file.string());
         folder.frames.emplace(id, parse_frame_table(csv, file.string()));
     }
     read_flights(folder);

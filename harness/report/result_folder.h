@@ -62,4 +62,7 @@ struct ResultFolder {
 /// `where` names the file in messages.
 [[nodiscard]] FrameTable parse_frame_table(std::string_view csv, const std::string& where);
 
+/// Throws InputError naming the file unless a cell's frames are those that it was written with.
+void expect_frames(const Json::Value& cell, std::string_view csv, const std::string& where);
+
 }  // namespace lodbench::report

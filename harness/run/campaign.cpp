@@ -237,10 +237,12 @@ private:
                      });
         if (!result.environment_error.empty()) throw EnvironmentError(result.environment_error);
         if (!result.input_error.empty()) throw InputError(result.input_error);
-        const Json::Value record =
+        Json::Value record =
             cell_record(cell.spec, cell.scenario, cell.params, result, scenario.measure.budget_ms);
         refuse_changed_input(record);
-        folder_.add_cell(cell.spec.id, record, frames_csv(result.frames));
+        const std::string csv = frames_csv(result.frames);
+        record["frames_checksum"] = report::checksum_of(csv);
+        folder_.add_cell(cell.spec.id, record, csv);
         finished_.insert(cell.spec.id);
         outcome_.cells.push_back(record);
         if (run_["gl"].isNull() && !result.gl_renderer.empty()) {

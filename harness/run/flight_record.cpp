@@ -172,7 +172,7 @@ void record_flight(const fs::path& out, const std::string& name, const Terrain& 
         entry["most_tiles_in_a_frame"] = Json::UInt64(need.most_in_a_frame);
         json["needed"].append(entry);
     }
-    report::write_whole(file, report::to_text(json) + "\n");
+    report::write_whole(file, report::seal(json) + "\n");
 }
 
 }  // namespace lodbench::run

@@ -64,7 +64,7 @@ private:
 };
 
 void write_record(const fs::path& file, const report::MatchRecord& record) {
-    report::write_whole(file, report::to_text(to_json(record), true) + "\n");
+    report::write_whole(file, report::seal(to_json(record), true) + "\n");
 }
 
 /// The folder, locked. Says whose it is before the first probe: by a match.json that is as yet
@@ -91,7 +91,7 @@ RunFolder begin_search(const RunRequest& request, const report::MatchTarget& tar
                         request.out.string()));
     }
     const report::MatchTarget begun =
-        report::read_match(report::parse_json(report::read_text(file), file.string()),
+        report::read_match(report::parse_sealed(report::read_text(file), file.string()),
                            file.string())
             .target;
     if (begun.words() != target.words() || begun.tolerance != target.tolerance) {

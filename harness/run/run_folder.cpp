@@ -16,6 +16,7 @@
 #include "api/error.h"
 #include "base/printable.h"
 #include "report/json.h"
+#include "report/result_folder.h"
 #include "report/results.h"
 
 namespace lodbench::run {
@@ -195,11 +196,15 @@ std::vector<Json::Value> RunFolder::repair() {
     std::set<std::string> ids;
     for (const std::string& line : report::read_lines(file, true)) {
         const std::string where = fmt::format("{}:{}", file.string(), cells.size() + 1);
-        Json::Value cell = report::parse_json(line, where);
+        Json::Value cell = report::parse_sealed(line, where);
         const std::string id = report::get_string(cell, "cell", where);
         if (!ids.insert(id).second) {
             throw InputError(
                 fmt::format("{}: cell '{}' is there twice; remove one of its lines", where, id));
+        }
+        if (cell.isMember("frames_checksum")) {
+            const fs::path frames = path_ / "frames" / (id + ".csv");
+            report::expect_frames(cell, report::read_text(frames), frames.string());
         }
         cells.push_back(std::move(cell));
     }
@@ -211,7 +216,7 @@ void RunFolder::add_cell(const std::string& id, const Json::Value& record, const
     const fs::path frames = path_ / "frames" / (id + ".csv");
     report::write_whole(frames, csv);
     try {
-        report::append_line(path_ / "cells.jsonl", report::to_text(record));
+        report::append_line(path_ / "cells.jsonl", report::seal(record));
     } catch (...) {
         std::error_code ignored;
         fs::remove(frames, ignored);

@@ -200,5 +200,35 @@ TEST_F(ResultsFolder, sweep_that_is_killed_goes_on_and_writes_its_table) {
     EXPECT_EQ(cells_of(out()).size(), 6U);
 }
 
+TEST_F(ResultsFolder, a_flipped_digit_is_found_by_report_and_resume_which_name_the_file) {
+    ASSERT_EQ(lodbench("run", kTemplate).status, 0);
+    std::mt19937 random(8);
+    for (const char* file : {"cells.jsonl", "frames/template__tiny__r0.csv", "flights/tiny.json"}) {
+        const std::string whole = text_of(out() / file);
+        for (int round = 0; round < 8; ++round) {
+            std::string damaged = whole;
+            std::size_t place = 0;
+            do {
+                place = random() % damaged.size();
+            } while (damaged[place] < '0' || damaged[place] > '9');
+            damaged[place] = damaged[place] == '9' ? '8' : char(damaged[place] + 1);
+            std::ofstream(out() / file) << damaged;
+            std::vector<std::vector<std::string>> commands = {
+                {"report", out().string(), "-o", (scratch_.path() / "page.html").string()}};
+            if (std::string(file) != "flights/tiny.json") {  // of which a run reads nothing
+                commands.push_back({"run", "--resume", "--out", out().string()});
+            }
+            for (const auto& arguments : commands) {
+                const Finished finished = run_lodbench(arguments, scratch_.path());
+                EXPECT_EQ(finished.status, 2) << arguments[0] << " " << file << ":" << place;
+                EXPECT_THAT(finished.output, HasSubstr((out() / file).string()));
+            }
+        }
+        std::ofstream(out() / file) << whole;
+    }
+    EXPECT_EQ(run_lodbench({"run", "--resume", "--out", out().string()}, scratch_.path()).status,
+              0);
+}
+
 }  // namespace
 }  // namespace lodbench::test

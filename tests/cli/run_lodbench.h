@@ -103,12 +103,12 @@ shots = [0]
     return file;
 }
 
-/// The objects of cells.jsonl by their id; throws when a line is no JSON.
+/// The objects of cells.jsonl by their id; throws when a line is no JSON or is damaged.
 inline std::vector<Json::Value> cells_of(const fs::path& out) {
     std::vector<Json::Value> cells;
     std::ifstream stream(out / "cells.jsonl");
     for (std::string line; std::getline(stream, line);) {
-        cells.push_back(report::parse_json(line, "cells.jsonl"));
+        cells.push_back(report::parse_sealed(line, "cells.jsonl"));
     }
     return cells;
 }

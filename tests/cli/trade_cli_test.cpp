@@ -127,7 +127,7 @@ TEST_F(Trade, match_finds_the_knob_and_flies_it_whatever_the_seed) {
             EXPECT_EQ(row["knob"].asDouble(), found.back());
             EXPECT_NEAR(row["pixel_error_px"].asDouble(), 2.0, 0.1);
         }
-        EXPECT_EQ(report::parse_json(text_of(fs::path(out(seed)) / "match.json"), "match.json"),
+        EXPECT_EQ(report::parse_sealed(text_of(fs::path(out(seed)) / "match.json"), "match.json"),
                   matched["match"]);
         EXPECT_THAT(text_of(fs::path(out(seed)) / "match.md"), HasSubstr("| lindstrom "));
     }
