@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <map>
 #include <set>
 
@@ -101,6 +102,7 @@ public:
             });
             write_summary();
         } catch (const EnvironmentError& error) {
+            if (nothing_is_kept()) throw;
             outcome_.error = error.what();
         }
         return std::move(outcome_);
@@ -120,17 +122,19 @@ private:
         return known;
     }
 
-    /// Bad input that is found before the first cell is finished leaves nothing behind: the same
-    /// command can be given again once the input is mended.
+    /// What is refused before the first cell is finished, bad input or a device that is not there,
+    /// leaves nothing behind: the same command can be given again once it is mended.
     template <typename Work>
     void discarding_what_is_refused(const Work& work) {
         try {
             work();
-        } catch (const InputError&) {
-            if (!resumed_ && outcome_.cells.empty()) folder_.discard();
+        } catch (const std::exception&) {
+            if (nothing_is_kept()) folder_.discard();
             throw;
         }
     }
+
+    [[nodiscard]] bool nothing_is_kept() const { return !resumed_ && outcome_.cells.empty(); }
 
     /// Cells of one run compare methods on one terrain: a file that changed between start and
     /// resume, the terrain's or the plugin's, ends the run.

@@ -101,7 +101,8 @@ TEST_F(BadTerrain, device_that_is_not_there_ends_with_status_4_and_what_was_trie
     EXPECT_EQ(finished.status, 4) << finished.output;
     EXPECT_THAT(finished.output, HasSubstr("for device 'nosuch': device 0 ("));
     EXPECT_THAT(finished.output, HasSubstr("which does not contain 'nosuch'"));
-    EXPECT_TRUE(cells_of(out()).empty()) << "it is no cell's failure";
+    EXPECT_FALSE(fs::exists(out())) << "the same command must do with another device";
+    EXPECT_EQ(run("heights.raw").status, 0);
 }
 
 TEST_F(BadTerrain, mistakes_of_usage_end_with_status_2_and_leave_no_folder) {
