@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 
+#include "cli/kills.h"
 #include "cli/run_lodbench.h"
 
 namespace lodbench::test {
@@ -154,24 +155,6 @@ TEST_F(ResultsFolder, run_that_was_killed_before_its_scenarios_stood_is_resumed)
     EXPECT_EQ(lodbench("run", {"--method", "template", "--resume"}).status, 0);
 }
 
-/// Kills the command at moments spread over its length, goes on with it by --resume, and returns
-/// the document that it writes at the end.
-std::string after_kills(const std::vector<std::string>& arguments, const fs::path& scratch,
-                        const fs::path& document, int kills) {
-    std::vector<std::string> resume = arguments;
-    resume.emplace_back("--resume");
-    std::mt19937 random(7);
-    for (int i = 0; i < kills; ++i) {
-        const pid_t child = start_lodbench(resume, scratch / "log");
-        usleep(useconds_t(100000 + random() % 900000));
-        kill(child, SIGKILL);
-        waitpid(child, nullptr, 0);
-    }
-    const Finished finished = run_lodbench(resume, scratch);
-    EXPECT_EQ(finished.status, 0) << finished.output;
-    return text_of(document);
-}
-
 TEST_F(ResultsFolder, match_that_is_killed_goes_on_to_the_result_of_an_undisturbed_one) {
     const std::vector<std::string> more = {"--method", "lindstrom", "--triangles",
                                            "100",      "--probes",  "4"};
@@ -181,8 +164,9 @@ TEST_F(ResultsFolder, match_that_is_killed_goes_on_to_the_result_of_an_undisturb
     EXPECT_EQ(again.status, 2);
     EXPECT_THAT(again.output, HasSubstr("--resume"));
     fs::remove_all(out());
-    EXPECT_EQ(after_kills(command("match", more), scratch_.path(), out() / "match.json", 5),
-              undisturbed);
+    EXPECT_EQ(
+        after_kills(resumed(command("match", more)), scratch_.path(), out() / "match.json", 5),
+        undisturbed);
     EXPECT_TRUE(fs::exists(out() / "match.md"));
     std::vector<std::string> other = more;
     other[3] = "200";
@@ -195,7 +179,7 @@ TEST_F(ResultsFolder, match_that_is_killed_goes_on_to_the_result_of_an_undisturb
 TEST_F(ResultsFolder, sweep_that_is_killed_goes_on_and_writes_its_table) {
     const std::vector<std::string> more = {"--method", "lindstrom", "--points", "3"};
     const std::string table =
-        after_kills(command("sweep", more), scratch_.path(), out() / "trade.md", 4);
+        after_kills(resumed(command("sweep", more)), scratch_.path(), out() / "trade.md", 4);
     EXPECT_THAT(table, HasSubstr("lindstrom tau="));
     EXPECT_EQ(cells_of(out()).size(), 6U);
 }
