@@ -19,6 +19,7 @@ extern "C" {  // glibc 2.36 forgets to say so
 #include <utility>
 
 #include "api/error.h"
+#include "base/console.h"
 
 namespace lodbench::base {
 
@@ -108,7 +109,7 @@ ChildProcess::ChildProcess(const std::function<int()>& body) {
         try {
             status = body();
         } catch (const std::exception& error) {
-            fmt::print(stderr, "{}\n", error.what());
+            tell("{}", error.what());
         }
         std::fflush(nullptr);
         _exit(status);

@@ -24,6 +24,21 @@ std::size_t sequence_length(std::string_view text) {
     return overlong || outside ? 0 : length;
 }
 
+/// C0, delete, and C1 (U+0080 to U+009F), which some terminals obey.
+bool is_control(std::string_view sequence) {
+    const auto lead = static_cast<unsigned char>(sequence[0]);
+    if (sequence.size() == 1) return lead < 0x20 || lead == 0x7F;
+    return lead == 0xC2 && static_cast<unsigned char>(sequence[1]) < 0xA0;
+}
+
+std::string escaped(std::string_view bytes) {
+    std::string result;
+    for (const char c : bytes) {
+        result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+    return result;
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
@@ -37,14 +52,39 @@ std::string printable(std::string_view text) {
         if (c == '"' || c == '\\') {
             result += '\\';
             result += c;
-        } else if (length == 0 || static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+        } else if (length == 0) {
+            result += escaped(text.substr(i, 1));
+        } else if (is_control(text.substr(i, length))) {
+            result += escaped(text.substr(i, length));
         } else {
             result += text.substr(i, length);
         }
         i += length == 0 ? 1 : length;
     }
     return result + "\"";
+}
+
+std::string plain(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = sequence_length(text.substr(i));
+        const std::string_view sequence = text.substr(i, length == 0 ? 1 : length);
+        const bool steers = length == 0 || (is_control(sequence) && sequence != "\n");
+        result += steers ? escaped(sequence) : std::string(sequence);
+        i += sequence.size();
+    }
+    return result;
+}
+
+std::string valid_utf8(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = sequence_length(text.substr(i));
+        result += length == 0 ? "\xEF\xBF\xBD" : text.substr(i, length);
+        i += length == 0 ? 1 : length;
+    }
+    return result;
 }
 
 }  // namespace lodbench::base

@@ -9,12 +9,15 @@
 #include <ctime>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/options.h"
 #include "report/results.h"
 
 namespace lodbench::cli {
 
 namespace {
+
+const std::string kClearLine = "\r\033[K";
 
 /// As it was typed, quoting apart.
 std::string command_line() {
@@ -68,7 +71,7 @@ void CampaignOptions::finish() {
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Progress::warned(const std::string& warning) {
-    fmt::print(stderr, "warning: {}\n", warning);
+    base::tell("warning: {}", warning);
 }
 
 void Progress::cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
@@ -76,9 +79,9 @@ void Progress::cell_progress(const run::PlannedCell& cell, std::size_t index, st
     const auto now = Clock::now();
     if (!terminal_ || now - drawn_ < std::chrono::milliseconds(200)) return;
     drawn_ = now;
-    fmt::print(stderr, "\r\033[K[{}/{}] {} {:.0f} %{}", index + 1, count, cell.spec.id,
-               100 * fraction, time_left(count - index, fraction));
-    std::fflush(stderr);
+    base::write_error(kClearLine + fmt::format("[{}/{}] {} {:.0f} %{}", index + 1, count,
+                                               cell.spec.id, 100 * fraction,
+                                               time_left(count - index, fraction)));
 }
 
 void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
@@ -91,8 +94,9 @@ void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, st
     } else if (record["reason"].isString()) {
         words += ": " + record["reason"].asString();
     }
-    fmt::print(stderr, "{}[{}/{}] {} {}{}\n", terminal_ ? "\r\033[K" : "", index + 1, count,
-               cell.spec.id, words, time_left(count - index - 1, 0));
+    if (terminal_) base::write_error(kClearLine);
+    base::tell("[{}/{}] {} {}{}", index + 1, count, cell.spec.id, words,
+               time_left(count - index - 1, 0));
 }
 
 /// From the mean of the cells so far; nothing before there is one.

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -90,7 +91,7 @@ int economy(Options& options) {
     } else {
         fmt::print("\n{}\nresults   {}\n", text, outcome.out.string());
     }
-    if (!outcome.error.empty()) fmt::print(stderr, "lodbench: {}\n", outcome.error);
+    if (!outcome.error.empty()) base::tell("lodbench: {}", outcome.error);
     return outcome.exit_status();
 }
 

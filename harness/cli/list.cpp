@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "base/console.h"
 #include "cli/commands.h"
 #include "cli/method_json.h"
 #include "cli/options.h"
@@ -47,7 +48,7 @@ int list_methods(const Options& options) {
     object["refused"] = Json::arrayValue;
     for (const run::PluginListing& plugin : plugins) {
         if (!plugin.refusal.empty()) {
-            fmt::print(stderr, "warning: {}\n", plugin.refusal);
+            base::tell("warning: {}", plugin.refusal);
             Json::Value refused;
             refused["path"] = plugin.path.string();
             refused["refusal"] = plugin.refusal;

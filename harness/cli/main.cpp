@@ -4,15 +4,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <system_error>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/commands.h"
 #include "run/exit_status.h"
 
 namespace {
 
 int fail(int status, const char* what) {
-    fmt::print(stderr, "lodbench: {}\n", what);
+    lodbench::base::tell("lodbench: {}", what);
     return status;
 }
 
@@ -31,9 +33,16 @@ std::string unknown_command(const CLI::App& app) {
     return fmt::format("there is no command '{}'; known: {}", rest.front(), known);
 }
 
+/// Status 2 where something that was printed did not arrive.
+int finished(int status) {
+    const std::string lost = lodbench::base::standard_output_error();
+    return lost.empty() ? status : fail(lodbench::run::kWrongInput, lost.c_str());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    lodbench::base::secure_standard_streams();
     CLI::App app{
         "lodbench measures terrain level-of-detail methods: each is a plugin, flown over the same "
         "terrain on the same path and measured from outside.",
@@ -51,7 +60,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        if (error.get_exit_code() == 0) return finished(app.exit(error));  // --help, --version
         std::string words = unknown_command(app);
         if (words.empty()) words = fmt::format("{}; see --help", error.what());
         return fail(kWrongInput, words.c_str());
@@ -59,8 +68,12 @@ int main(int argc, char** argv) {
         return fail(kWrongInput, error.what());
     } catch (const lodbench::EnvironmentError& error) {
         return fail(kNothingMeasured, error.what());
+    } catch (const std::system_error& error) {
+        // {fmt} throws it where standard output refuses.
+        if (std::ferror(stdout) != 0) return finished(status);
+        return fail(kNothingMeasured, fmt::format("internal error: {}", error.what()).c_str());
     } catch (const std::exception& error) {
         return fail(kNothingMeasured, fmt::format("internal error: {}", error.what()).c_str());
     }
-    return status;
+    return finished(status);
 }

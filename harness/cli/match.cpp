@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/trade_options.h"
@@ -90,8 +91,8 @@ int match(Options& options) {
     const run::MatchOutcome outcome = run::match(
         options.request, target, options.most_probes, run::executable_path(), progress,
         [](const run::MatchedMethod& method, const run::Probe& probe, const std::string& failure) {
-            fmt::print(stderr, "{}: {} = {:.6g} gives {}\n", method.method, method.knob->name,
-                       probe.knob, failure.empty() ? number_text(probe.value) : failure);
+            base::tell("{}: {} = {:.6g} gives {}", method.method, method.knob->name, probe.knob,
+                       failure.empty() ? number_text(probe.value) : failure);
         });
     std::map<std::string, std::string> knobs;
     for (const run::MatchedMethod& method : outcome.methods) {
@@ -112,7 +113,7 @@ int match(Options& options) {
         fmt::print("\n{}\nresults   {}\n", text, outcome.campaign.out.string());
     }
     if (!outcome.campaign.error.empty()) {
-        fmt::print(stderr, "lodbench: {}\n", outcome.campaign.error);
+        base::tell("lodbench: {}", outcome.campaign.error);
     }
     return outcome.campaign.exit_status();
 }

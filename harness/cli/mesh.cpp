@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/console.h"
 #include "base/isolated.h"
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -166,13 +167,11 @@ int run_mesh(const MeshOptions& options) {
         case Ending::answered: fmt::print("{}\n", answer.text); return run::kAllWell;
         case Ending::refused: throw InputError(answer.text);
         case Ending::no_means: throw EnvironmentError(answer.text);
-        case Ending::threw:
-            fmt::print(stderr, "lodbench: {}\n", answer.text);
-            return run::kCellFailed;
+        case Ending::threw: base::tell("lodbench: {}", answer.text); return run::kCellFailed;
         case Ending::died:
         case Ending::timed_out: break;
     }
-    fmt::print(stderr, "lodbench: the process that flew '{}' of plugin {} {}\n", method.id,
+    base::tell("lodbench: the process that flew '{}' of plugin {} {}", method.id,
                method.plugin.string(), answer.text);
     return run::kCellFailed;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "report/json.h"
@@ -45,7 +46,7 @@ int fly(Options& options) {
     Progress progress;
     const run::CampaignOutcome outcome = run_campaign(request, run::executable_path(), progress);
     print_outcome(outcome, options.json);
-    if (!outcome.error.empty()) fmt::print(stderr, "lodbench: {}\n", outcome.error);
+    if (!outcome.error.empty()) base::tell("lodbench: {}", outcome.error);
     return outcome.exit_status();
 }
 

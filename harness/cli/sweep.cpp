@@ -8,6 +8,7 @@
 #include <set>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -115,7 +116,7 @@ int sweep(Options& options) {
     } else {
         fmt::print("\n{}\nresults   {}\n", text, outcome.out.string());
     }
-    if (!outcome.error.empty()) fmt::print(stderr, "lodbench: {}\n", outcome.error);
+    if (!outcome.error.empty()) base::tell("lodbench: {}", outcome.error);
     return outcome.exit_status();
 }
 

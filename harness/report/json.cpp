@@ -53,7 +53,7 @@ std::string to_text(const Json::Value& value, bool indented) {
     builder["indentation"] = indented ? "  " : "";
     builder["precision"] = 15;  // 0.1 stays 0.1
     builder["emitUTF8"] = true;
-    return Json::writeString(builder, value);
+    return base::valid_utf8(Json::writeString(builder, value));
 }
 
 std::string checksum_of(std::string_view text) {

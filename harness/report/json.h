@@ -13,6 +13,7 @@ namespace lodbench::report {
 [[nodiscard]] Json::Value parse_json(std::string_view text, const std::string& where);
 
 /// On one line, or indented by two blanks. Numbers that are not finite become null: JSON has none.
+/// Bytes that are not UTF-8, of a file's name for instance, become U+FFFD.
 [[nodiscard]] std::string to_text(const Json::Value& value, bool indented = false);
 
 /// 16 hex digits over the bytes of a text.

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "base/console.h"
+
 #include <cstdlib>
 #include <string_view>
 #include <utility>
@@ -13,7 +15,7 @@ template <typename... Args>
 void loader_log(fmt::format_string<Args...> format, Args&&... args) {
     const char* wanted = std::getenv("LODBENCH_LOADER_DEBUG");
     if (wanted == nullptr || std::string_view(wanted) == "0" || *wanted == '\0') return;
-    fmt::print(stderr, "lodbench loader: {}\n", fmt::format(format, std::forward<Args>(args)...));
+    base::tell("lodbench loader: {}", fmt::format(format, std::forward<Args>(args)...));
 }
 
 }  // namespace lodbench::run

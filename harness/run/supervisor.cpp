@@ -16,6 +16,7 @@
 
 #include "api/error.h"
 #include "base/child_process.h"
+#include "base/console.h"
 #include "run/cell_record.h"
 
 namespace lodbench::run {
@@ -147,7 +148,7 @@ int become_cell(const std::filesystem::path& program, int spec, int signs, int r
                                        std::to_string(result)};
     execl(program.c_str(), program.c_str(), "cell", "--spec", descriptors[0].c_str(), "--signs",
           descriptors[1].c_str(), "--result", descriptors[2].c_str(), nullptr);
-    fmt::print(stderr, "cannot run {}: {}\n", program.string(), std::strerror(errno));
+    base::tell("cannot run {}: {}", program.string(), std::strerror(errno));
     return 127;
 }
 
