@@ -7,9 +7,13 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <fstream>
 #include <map>
+#include <new>
+#include <string_view>
 #include <thread>
 
 #include "base/hash.h"
@@ -94,6 +98,11 @@ public:
                    : fmt::format(", frame {} of the {} replay", frame_, name_of(replay_));
     }
 
+    /// True once the plugin was opened: what fails in this process from then on may be its doing.
+    [[nodiscard]] bool plugin_opened() const {
+        return stage_ != nullptr || signs_.call.load() >= Call::open_plugin;
+    }
+
 private:
     void open();
     void make_stage();
@@ -161,7 +170,11 @@ void Flight::open() {
     // Known before an hour's flight, not after.
     if (stored && measures_truth()) terrain::require_room_for_whole(terrain_->info());
     path_ = scenario::make_path(scenario_.path, scenario_.frames, scenario_.rate_hz, *terrain_);
-    result_.plugin_checksum = file_checksum(spec_.plugin);
+    try {
+        result_.plugin_checksum = file_checksum(spec_.plugin);
+    } catch (const std::exception& error) {
+        throw MethodFailure(error.what());  // it was there when it was listed
+    }
     result_.terrain_name = terrain_->info().name;
     result_.terrain_checksum = terrain_->info().checksum;
     signs_.enter(Call::start);
@@ -408,9 +421,21 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
         result.status = CellStatus::failed;
         result.reason = fmt::format("reading the terrain: {}{}", error.what(), where());
     } catch (const EnvironmentError& error) {
-        result.environment_error = error.what();
+        // Descriptors and limits are the plugin's to spoil, a full disk is not.
+        const std::string_view what = error.what();
+        const bool disk_full = what.find(std::strerror(ENOSPC)) != what.npos ||
+                               what.find(std::strerror(EDQUOT)) != what.npos;
+        if (flight && flight->plugin_opened() && !disk_full) {
+            result.status = CellStatus::failed;
+            result.reason = error.what() + where();
+        } else {
+            result.environment_error = error.what();
+        }
     } catch (const InputError& error) {
         result.input_error = error.what();
+    } catch (const std::bad_alloc&) {
+        result.status = CellStatus::failed;
+        result.reason = "memory ran out" + where();
     } catch (const std::exception& error) {
         result.status = CellStatus::failed;
         result.reason = error.what() + where();

@@ -131,20 +131,26 @@ std::string last_words(const base::FileDescriptor& output) {
     return text.empty() ? "" : fmt::format(" (its last words: '{}')", text);
 }
 
-void refuse_duplicates(std::vector<PluginListing>& listings) {
-    std::map<std::string, std::vector<PluginListing*>> holders;
-    for (PluginListing& listing : listings) {
-        for (const MethodInfo& method : listing.methods) holders[method.id].push_back(&listing);
+/// An id belongs to the earliest folder that holds it. Two holders in that folder are both refused,
+/// for nothing tells which is meant. `folder_of` numbers the folder of each listing.
+void refuse_duplicates(std::vector<PluginListing>& listings,
+                       const std::vector<std::size_t>& folder_of) {
+    std::map<std::string, std::vector<std::size_t>> holders;
+    for (std::size_t i = 0; i < listings.size(); ++i) {
+        for (const MethodInfo& method : listings[i].methods) holders[method.id].push_back(i);
     }
-    for (const auto& [id, plugins] : holders) {
-        if (plugins.size() < 2) continue;
-        for (PluginListing* plugin : plugins) {
-            const auto other = std::ranges::find_if(plugins, [&](auto* p) { return p != plugin; });
-            plugin->refusal = fmt::format(
-                "plugin {} cannot be used: its method id '{}' is also held by {}; remove one of "
+    for (const auto& [id, held] : holders) {
+        if (held.size() < 2) continue;
+        const bool one_wins = folder_of[held[0]] != folder_of[held[1]];
+        for (std::size_t i = one_wins ? 1 : 0; i < held.size(); ++i) {
+            PluginListing& plugin = listings[held[i]];
+            const PluginListing& other = listings[held[i == 0 ? 1 : 0]];
+            plugin.refusal = fmt::format(
+                "plugin {} cannot be used: its method id '{}' is also held by {}{}; remove one of "
                 "the two",
-                plugin->path.string(), id, (*other)->path.string());
-            loader_log("{}", plugin->refusal);
+                plugin.path.string(), id, other.path.string(),
+                one_wins ? ", whose folder goes first" : "");
+            loader_log("{}", plugin.refusal);
         }
     }
     for (PluginListing& listing : listings) {
@@ -209,8 +215,10 @@ PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time
 
 std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
     std::vector<PluginListing> listings;
+    std::vector<std::size_t> folder_of;
     std::set<fs::path> seen;
-    for (const fs::path& folder : folders) {
+    for (std::size_t number = 0; number < folders.size(); ++number) {
+        const fs::path& folder = folders[number];
         loader_log("looking into {}", folder.string());
         std::error_code error;
         std::vector<fs::path> files;
@@ -224,6 +232,7 @@ std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
                                 fmt::format("plugin folder {} cannot be read: {}; correct "
                                             "--plugin-dir or LODBENCH_PLUGIN_PATH",
                                             folder.string(), error.message())});
+            folder_of.push_back(number);
             continue;
         }
         std::ranges::sort(files);
@@ -234,9 +243,10 @@ std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
             if (path.empty()) path = fs::absolute(file);
             if (!seen.insert(path).second) continue;
             listings.push_back(list_plugin(path));
+            folder_of.push_back(number);
         }
     }
-    refuse_duplicates(listings);
+    refuse_duplicates(listings, folder_of);
     return listings;
 }
 

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <utility>
 
 #include "api/error.h"
@@ -27,6 +28,7 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::size_t kLogLimit = 1 << 20;
 constexpr auto kWatchInterval = std::chrono::milliseconds(20);
+constexpr double kExitGrace_s = 2;  // for the exit handlers of a child whose result is written
 
 /// The page that both processes map.
 class SharedSigns {
@@ -187,6 +189,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     std::uint64_t peak = 0;
     std::uint64_t beats = 0;
     auto last_beat = start;
+    std::optional<SteadyClock::time_point> finished;
     while (!child.wait(kWatchInterval, reading.number())) {
         log.drain(reading.number());
         const auto now = SteadyClock::now();
@@ -204,6 +207,12 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
             log.drain(reading.number());
             return ended(status, reason, peak);
         };
+        // Nothing that the plugin leaves to its exit handlers can take a written result away.
+        if (signs->finished.load() == 1) {
+            if (!finished) finished = now;
+            if (seconds(*finished) > kExitGrace_s) child.kill_group();
+            continue;
+        }
         if (resident > limits.memory_bytes) {
             return kill_for(CellStatus::failed, fmt::format("exceeded the memory limit of {} MiB",
                                                             limits.memory_bytes >> 20));

@@ -84,6 +84,21 @@ TEST(BrokenPlugins, lose_their_own_cell_only_with_status_and_reason) {
     }
 }
 
+TEST(BrokenPlugins, that_lower_the_limits_of_their_process_fail_alone) {
+    const ScratchFolder folder;
+    const fs::path out = folder.path() / "out";
+    const Finished finished = run_lodbench(
+        {"run", tiny_scenario(folder.path(), "repetitions = 1\n").string(), "--out", out.string(),
+         "--method", "lowers-limits", "--method", "healthy", "--plugin-dir",
+         broken_plugin_folder("lowers_limits"), "--plugin-dir", broken_plugin_folder("healthy")},
+        folder.path());
+    EXPECT_EQ(finished.status, 3) << finished.output;
+    std::map<std::string, Json::Value> cells;
+    for (const Json::Value& cell : cells_of(out)) cells[cell["method"].asString()] = cell;
+    EXPECT_EQ(cells["lowers-limits"]["status"].asString(), "failed");
+    EXPECT_EQ(cells["healthy"]["status"].asString(), "ok") << cells["healthy"]["reason"];
+}
+
 TEST(BrokenPlugins, that_do_not_load_are_refused_with_a_warning_and_recorded) {
     const ScratchFolder folder;
     const fs::path out = folder.path() / "out";
