@@ -22,12 +22,6 @@ namespace {
 constexpr std::array<std::string_view, 5> kKeptColumns = {"frame", "wall_ms", "triangles",
                                                           "pixel_p999_px", "popping_p999_px"};
 
-/// Nothing but a name: what comes out of a file must not lead out of the folder.
-bool is_file_name(const std::string& name) {
-    return !name.empty() && name != "." && name != ".." && name.find('/') == name.npos &&
-           name.find('\0') == name.npos;
-}
-
 std::string read_input(const fs::path& file, const char* remedy) {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) {
@@ -81,42 +75,6 @@ bool is_summary(const Json::Value& value) {
            (value.isObject() && std::all_of(value.begin(), value.end(), [](const auto& member) {
                 return is_figure(member) || member.isObject();  // of the worst, its place
             }));
-}
-
-void check_cell(const Json::Value& cell, const std::string& where) {
-    if (!cell.isObject()) throw InputError(fmt::format("{}: no object; {}", where, kCopyAgain));
-    if (const std::string id = get_string(cell, "cell", where); !is_file_name(id)) {
-        throw InputError(fmt::format("{}: '{}' is no name of a cell; {}", where, id, kCopyAgain));
-    }
-    (void)get_string(cell, "method", where);
-    (void)get_string(cell, "scenario", where);
-    (void)get_string(cell, "status", where);
-    const auto expect = [&](const char* key, bool good, const char* what) {
-        expect_field(good, where, key, what);
-    };
-    expect("repetition", cell["repetition"].isInt(), "a whole number");
-    expect("params", cell["params"].isObject(), "an object");
-    expect("reason", cell["reason"].isNull() || cell["reason"].isString(), "text");
-    const Json::Value& warnings = cell["warnings"];
-    expect("warnings",
-           warnings.isNull() || (warnings.isArray() &&
-                                 std::all_of(warnings.begin(), warnings.end(),
-                                             [](const auto& text) { return text.isString(); })),
-           "a list of texts");
-    for (const char* key : kFigures) {
-        expect(key, is_figure(cell[key]), "a number, \"inf\" or null");
-    }
-    for (const char* key : kSummaries) {
-        expect(key, is_summary(cell[key]), "an object of numbers, or null");
-    }
-    const Json::Value& economy = cell["economy"];
-    expect("economy",
-           economy.isNull() || (economy.isArray() && std::all_of(economy.begin(), economy.end(),
-                                                                 [](const auto& frame) {
-                                                                     return frame.isObject() &&
-                                                                            frame["frame"].isInt();
-                                                                 })),
-           "a list of frames, or null");
 }
 
 void check_schema(const Json::Value& json, const fs::path& file) {
@@ -244,7 +202,7 @@ FlightRecord read_flight(const fs::path& file, const fs::path& picture) {
 void read_flights(ResultFolder& folder) {
     for (const Json::Value& cell : folder.cells) {
         const std::string name = cell["scenario"].asString();
-        if (!is_file_name(name) || folder.flights.contains(name)) continue;
+        if (folder.flights.contains(name)) continue;
         const fs::path file = folder.path / "flights" / (name + ".json");
         std::error_code absent;
         if (!fs::is_regular_file(file, absent)) continue;
@@ -263,6 +221,58 @@ void read_search(ResultFolder& folder) {
 }
 
 }  // namespace
+
+void expect_file_name(const std::string& name, const char* what, const std::string& where) {
+    if (!name.empty() && name != "." && name != ".." && name.find('/') == name.npos &&
+        name.find('\0') == name.npos) {
+        return;
+    }
+    throw InputError(fmt::format("{}: '{}' is no name of a {}; {}", where, name, what, kCopyAgain));
+}
+
+void expect_plain_file(const fs::path& file) {
+    std::error_code ignored;
+    const fs::file_type type = fs::symlink_status(file, ignored).type();
+    if (type == fs::file_type::not_found || type == fs::file_type::regular) return;
+    throw InputError(
+        fmt::format("{}: this is no plain file (but a link, pipe, folder or device); "
+                    "put the file itself there",
+                    file.string()));
+}
+
+void check_cell(const Json::Value& cell, const std::string& where) {
+    if (!cell.isObject()) throw InputError(fmt::format("{}: no object; {}", where, kCopyAgain));
+    expect_file_name(get_string(cell, "cell", where), "cell", where);
+    (void)get_string(cell, "method", where);
+    expect_file_name(get_string(cell, "scenario", where), "scenario", where);
+    (void)get_string(cell, "status", where);
+    const auto expect = [&](const char* key, bool good, const char* what) {
+        expect_field(good, where, key, what);
+    };
+    expect("repetition", cell["repetition"].isInt(), "a whole number");
+    expect("params", cell["params"].isObject(), "an object");
+    expect("reason", cell["reason"].isNull() || cell["reason"].isString(), "text");
+    const Json::Value& warnings = cell["warnings"];
+    expect("warnings",
+           warnings.isNull() || (warnings.isArray() &&
+                                 std::all_of(warnings.begin(), warnings.end(),
+                                             [](const auto& text) { return text.isString(); })),
+           "a list of texts");
+    for (const char* key : kFigures) {
+        expect(key, is_figure(cell[key]), "a number, \"inf\" or null");
+    }
+    for (const char* key : kSummaries) {
+        expect(key, is_summary(cell[key]), "an object of numbers, or null");
+    }
+    const Json::Value& economy = cell["economy"];
+    expect("economy",
+           economy.isNull() || (economy.isArray() && std::all_of(economy.begin(), economy.end(),
+                                                                 [](const auto& frame) {
+                                                                     return frame.isObject() &&
+                                                                            frame["frame"].isInt();
+                                                                 })),
+           "a list of frames, or null");
+}
 
 const std::vector<double>* FrameTable::find(std::string_view column) const {
     const auto found = columns.find(column);

@@ -59,6 +59,17 @@ struct ResultFolder {
 /// flights may be missing.
 [[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& path);
 
+/// Throws InputError unless `name` is nothing but a name: what comes out of a file must not lead
+/// out of the folder. `what` is what it names: "cell", "scenario".
+void expect_file_name(const std::string& name, const char* what, const std::string& where);
+
+/// Throws InputError unless nothing or a plain file lies there: a link leads out of the folder, and
+/// reading a pipe never ends.
+void expect_plain_file(const std::filesystem::path& file);
+
+/// Throws InputError unless `cell`, a line of cells.jsonl, has fields of the right types.
+void check_cell(const Json::Value& cell, const std::string& where);
+
 /// `where` names the file in messages.
 [[nodiscard]] FrameTable parse_frame_table(std::string_view csv, const std::string& where);
 

@@ -10,6 +10,7 @@
 
 #include "api/error.h"
 #include "report/json.h"
+#include "report/result_folder.h"
 #include "report/results.h"
 #include "report/table.h"
 #include "run/cell_record.h"
@@ -48,6 +49,7 @@ Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
 Json::Value run_context(const RunRequest& request, const Plan& plan,
                         const std::vector<PluginListing>& plugins) {
     Json::Value run = machine_context();
+    run["started"] = utc_now();
     run["command_line"] = request.command_line;
     run["seed"] = Json::UInt64(plan.seed);
     run["device_asked"] = request.device;
@@ -72,6 +74,29 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
     for (const std::string& warning : plan.warnings) run["warnings"].append(warning);
     run["cells"] = plan_to_json(plan);
     return run;
+}
+
+/// Of run.json, what is shown as text or changed when it is resumed. Throws InputError.
+void check_context(const Json::Value& run, const std::string& where) {
+    const auto expect_text = [&](const Json::Value& object, const char* key) {
+        const Json::Value& value = object[key];
+        report::expect_field(value.isNull() || value.isString(), where, key, "text");
+    };
+    for (const char* key : {"tool_version", "commit", "command_line", "os", "cpu"}) {
+        expect_text(run, key);
+    }
+    const Json::Value& gl = run["gl"];
+    report::expect_field(gl.isNull() || gl.isObject(), where, "gl", "an object or null");
+    if (gl.isObject()) {
+        for (const char* key : {"vendor", "renderer", "version", "timer_verdict"}) {
+            expect_text(gl, key);
+        }
+    }
+    const Json::Value& warnings = report::get_array(run, "warnings", where);
+    report::expect_field(std::all_of(warnings.begin(), warnings.end(),
+                                     [](const auto& warning) { return warning.isString(); }),
+                         where, "warnings", "a list of texts");
+    report::expect_field(run["seed"].isUInt64(), where, "seed", "a whole number");
 }
 
 /// A campaign under way.
@@ -161,6 +186,9 @@ private:
         const std::vector<PluginListing> plugins =
             list_plugins(plugin_folders(request_.plugin_dirs));
         plan_ = make_plan(request_, plugins);
+        if (std::string warning = quota_warning(machine_context()); !warning.empty()) {
+            plan_.warnings.push_back(std::move(warning));
+        }
         outcome_.warnings = plan_.warnings;
         claim_names();
         run_ = run_context(request_, plan_, plugins);
@@ -195,29 +223,66 @@ private:
                 report::kSchemaVersion));
         }
         try {
+            check_context(run_, file.string());
+            refuse_other_build(file);
             folder_.make_parts();
             write_scenarios(run_["scenarios"]);  // a run killed early may not have come to it
-            plan_ = plan_from_json(run_, folder_.path());
+            const std::vector<PluginListing> plugins =
+                list_plugins(plugin_folders(request_.plugin_dirs));
+            plan_ = plan_from_json(run_, folder_.path(), plugins);
+            refuse_other_request(file, plugins);
         } catch (const Json::Exception& error) {
-            throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+            throw InputError(
+                fmt::format("{}: {}; {}", file.string(), error.what(), report::kCopyAgain));
         }
-        refuse_other_request(file);
         for (const Json::Value& warning : run_["warnings"])
             outcome_.warnings.push_back(warning.asString());
         claim_names();
+        report::expect_plain_file(folder_.path() / "cells.jsonl");
         outcome_.cells = folder_.repair();
-        for (const Json::Value& cell : outcome_.cells) finished_.insert(cell["cell"].asString());
+        for (std::size_t i = 0; i < outcome_.cells.size(); ++i) {
+            const fs::path lines = folder_.path() / "cells.jsonl";
+            report::check_cell(outcome_.cells[i], fmt::format("{}:{}", lines.string(), i + 1));
+            finished_.insert(outcome_.cells[i]["cell"].asString());
+        }
+    }
+
+    /// Cells of one run compare methods under one program.
+    void refuse_other_build(const fs::path& file) const {
+        const Json::Value here = machine_context();
+        for (const char* field : {"tool_version", "commit", "build_type", "compiler", "abi_tag"}) {
+            if (here[field] == run_[field]) continue;
+            throw InputError(fmt::format(
+                "{}: '{}' is {} and that of this lodbench is {}; resume it with the "
+                "lodbench that began it, or begin anew with another --out",
+                file.string(), field, report::to_text(run_[field]), report::to_text(here[field])));
+        }
+    }
+
+    /// The same for the driver: what a cell saw of it must be what the first cell saw.
+    void refuse_other_renderer(const Json::Value& seen) const {
+        if (run_["gl"].isNull()) return;
+        for (const char* field : {"vendor", "renderer", "version"}) {
+            const Json::Value& began = run_["gl"][field];
+            if (seen[field] == began) continue;
+            throw InputError(
+                fmt::format("the OpenGL {0} has changed since the run began: gl.{0} was {1} and is "
+                            "{2}; resume it with the driver and --device that began it, or begin "
+                            "anew with another --out",
+                            field, report::to_text(began), report::to_text(seen[field])));
+        }
     }
 
     /// What is asked for beside --resume must be what the run began with: it is flown as it was
     /// planned.
-    void refuse_other_request(const fs::path& file) const {
+    void refuse_other_request(const fs::path& file,
+                              const std::vector<PluginListing>& plugins) const {
         if (!request_.names_cells()) return;
-        const Plan asked = make_plan(request_, list_plugins(plugin_folders(request_.plugin_dirs)));
+        const Plan asked = make_plan(request_, plugins);
         const bool same_scenarios =
             std::ranges::equal(asked.scenarios, plan_.scenarios, {}, &scenario::Scenario::text,
                                &scenario::Scenario::text);
-        if (same_scenarios && plan_to_json(asked) == run_["cells"]) return;
+        if (same_scenarios && plan_to_json(asked) == plan_to_json(plan_)) return;
         throw InputError(
             fmt::format("--resume: the other arguments or what they name differ from {}; give "
                         "--resume and --out alone, or as it began: {}",
@@ -244,6 +309,7 @@ private:
         Json::Value record =
             cell_record(cell.spec, cell.scenario, cell.params, result, scenario.measure.budget_ms);
         refuse_changed_input(record);
+        if (!result.gl_renderer.empty()) refuse_other_renderer(gl_context(result));
         const std::string csv = frames_csv(result.frames);
         record["frames_checksum"] = report::checksum_of(csv);
         folder_.add_cell(cell.spec.id, record, csv);
@@ -292,11 +358,7 @@ private:
     }
 
     [[nodiscard]] fs::path scenario_file(const std::string& name) const {
-        // A damaged file must not send us out of the folder.
-        if (name.empty() || name.find('/') != name.npos) {
-            throw InputError(fmt::format("{}: '{}' is no name of a scenario",
-                                         (folder_.path() / "run.json").string(), name));
-        }
+        report::expect_file_name(name, "scenario", (folder_.path() / "run.json").string());
         return folder_.path() / "scenarios" / (name + ".toml");
     }
 

@@ -6,6 +6,8 @@
 #include <sched.h>
 #include <sys/utsname.h>
 
+#include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -13,6 +15,8 @@
 #include "report/results.h"
 
 namespace lodbench::run {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -33,7 +37,61 @@ Json::Value text_or_null(const std::string& text) {
     return text.empty() ? Json::Value::null : Json::Value(text);
 }
 
+/// A group's quota in cores. Nothing where it has none.
+std::optional<double> quota_of(const fs::path& group) {
+    std::string quota;
+    double period_us = 0;
+    if (std::ifstream both(group / "cpu.max"); both) {  // version 2: "QUOTA PERIOD", "max PERIOD"
+        both >> quota >> period_us;
+    } else {
+        std::ifstream(group / "cpu.cfs_quota_us") >> quota;  // -1: none
+        std::ifstream(group / "cpu.cfs_period_us") >> period_us;
+    }
+    const double quota_us = std::strtod(quota.c_str(), nullptr);
+    if (!(quota_us > 0) || !(period_us > 0)) return std::nullopt;
+    return quota_us / period_us;
+}
+
 }  // namespace
+
+std::optional<double> cpu_quota(const fs::path& groups, const fs::path& mounts) {
+    std::optional<double> least;
+    std::ifstream stream(groups);
+    for (std::string line; std::getline(stream, line);) {  // "NUMBER:CONTROLLERS:/GROUP"
+        const std::size_t first = line.find(':');
+        const std::size_t second = first == line.npos ? first : line.find(':', first + 1);
+        if (second == line.npos) continue;
+        const std::string controllers = line.substr(first + 1, second - first - 1);
+        if (!controllers.empty() && ("," + controllers + ",").find(",cpu,") == line.npos) continue;
+        const fs::path mount = mounts / (fs::exists(mounts / controllers) ? controllers : "cpu");
+        // A group's parents bind it too. Inside a container its own folder may be the mount.
+        fs::path group = fs::path(line.substr(second + 1)).relative_path();
+        for (;; group = group.parent_path()) {
+            const std::optional<double> quota = quota_of(mount / group);
+            if (quota && (!least || *quota < *least)) least = quota;
+            if (group.empty()) break;
+        }
+    }
+    return least;
+}
+
+std::string quota_warning(const Json::Value& machine) {
+    const Json::Value& quota = machine["cpu_quota_cores"];
+    const Json::Value& cores = machine["cores"];
+    if (quota.isNull() || cores.isNull() || quota.asDouble() >= cores.asDouble()) return {};
+    return fmt::format(
+        "the CPU quota of this process's control group is {:.3g} of its {} cores: "
+        "times hold pauses that the system imposes; lift the quota to compare them",
+        quota.asDouble(), cores.asInt());
+}
+
+std::string utc_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm time{};
+    gmtime_r(&now, &time);
+    char text[32];
+    return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &time)};
+}
 
 Json::Value machine_context() {
     Json::Value json;
@@ -53,6 +111,8 @@ Json::Value machine_context() {
     // The cores that this process may use, which a container may have cut down.
     json["cores"] = sched_getaffinity(0, sizeof cores, &cores) == 0 ? Json::Value(CPU_COUNT(&cores))
                                                                     : Json::Value::null;
+    const std::optional<double> quota = cpu_quota();
+    json["cpu_quota_cores"] = quota ? Json::Value(*quota) : Json::Value::null;
     return json;
 }
 

@@ -3,12 +3,29 @@
 
 #include <json/value.h>
 
+#include <filesystem>
+#include <optional>
+#include <string>
+
 #include "run/cell.h"
 
 namespace lodbench::run {
 
-/// Tool version, commit, build type, compiler, operating system, processor, cores.
+/// Tool version, commit, build type, compiler, operating system, processor, cores, CPU quota.
 [[nodiscard]] Json::Value machine_context();
+
+/// The processor time that the control groups of a process leave it, in cores: 0.5 is half of one
+/// core's time. The least of its groups counts. Nothing where no group has a limit. `groups` is the
+/// process's list of them, `mounts` the folder where they are mounted (versions 1 and 2).
+[[nodiscard]] std::optional<double> cpu_quota(
+    const std::filesystem::path& groups = "/proc/self/cgroup",
+    const std::filesystem::path& mounts = "/sys/fs/cgroup");
+
+/// What to say of a machine whose quota is below its cores; "" where it is not.
+[[nodiscard]] std::string quota_warning(const Json::Value& machine);
+
+/// Date and time in UTC: "2025-01-31T12:34:56Z".
+[[nodiscard]] std::string utc_now();
 
 /// What a cell's child saw of its GL context.
 [[nodiscard]] Json::Value gl_context(const CellResult& result);

@@ -9,6 +9,7 @@
 #include "api/error.h"
 #include "base/hash.h"
 #include "report/json.h"
+#include "report/result_folder.h"
 #include "report/results.h"
 #include "run/cell_record.h"
 #include "run/locations.h"
@@ -129,12 +130,22 @@ std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scena
     return requests;
 }
 
+/// The plugin that a run began with, found as when it began.
+const MethodInfo& method_again(const std::vector<PluginListing>& plugins, const std::string& id) {
+    try {
+        return find_method(plugins, id, "cannot resume");
+    } catch (const InputError& error) {
+        throw InputError(
+            fmt::format("{}; give --plugin-dir DIR, the folder of its plugin", error.what()));
+    }
+}
+
 }  // namespace
 
 bool RunRequest::names_cells() const {
-    return !scenarios.empty() || !methods.empty() || !settings.empty() || !plugin_dirs.empty() ||
-           !device.empty() || overrides.frames || overrides.viewport || overrides.seed ||
-           overrides.repetitions || overrides.truth || overrides.economy;
+    return !scenarios.empty() || !methods.empty() || !settings.empty() || !device.empty() ||
+           overrides.frames || overrides.viewport || overrides.seed || overrides.repetitions ||
+           overrides.truth || overrides.economy;
 }
 
 void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {
@@ -244,36 +255,35 @@ Json::Value plan_to_json(const Plan& plan) {
     return cells;
 }
 
-Plan plan_from_json(const Json::Value& run, const fs::path& out) {
+Plan plan_from_json(const Json::Value& run, const fs::path& out,
+                    const std::vector<PluginListing>& plugins) {
     const std::string where = (out / "run.json").string();
     Plan plan;
     for (const Json::Value& json : report::get_array(run, "scenarios", where)) {
         const std::string name = report::get_string(json, "name", where);
-        // A damaged file must not send us out of the folder.
-        if (name.empty() || name.find('/') != name.npos) {
-            throw InputError(fmt::format("{}: '{}' is no name of a scenario", where, name));
-        }
+        report::expect_file_name(name, "scenario", where);
+        const fs::path file = out / "scenarios" / (name + ".toml");
+        report::expect_plain_file(file);
         const fs::path origin = report::get_string(json, "file", where);
-        plan.scenarios.push_back(scenario::parse_scenario(
-            report::read_text(out / "scenarios" / (name + ".toml")), origin));
+        plan.scenarios.push_back(scenario::parse_scenario(report::read_text(file), origin));
         plan.origins.push_back(origin);
     }
-    std::map<std::string, PluginListing> plugins;
     for (Json::Value json : report::get_array(run, "cells", where)) {
         for (const char* key : {"out", "scenario_file", "scenario_origin"}) json[key] = "";
         PlannedCell cell;
         cell.spec = read_spec(report::to_text(json), where);
+        report::expect_file_name(cell.spec.id, "cell", where);
         cell.scenario = report::get_string(json, "scenario", where);
-        const std::string path = cell.spec.plugin.string();
-        if (!plugins.contains(path)) plugins.emplace(path, list_plugin(cell.spec.plugin));
-        const PluginListing& plugin = plugins.at(path);
-        if (!plugin.refusal.empty()) throw InputError("cannot resume: " + plugin.refusal);
-        const auto method = std::ranges::find(plugin.methods, cell.spec.method, &MethodInfo::id);
-        if (method == plugin.methods.end()) {
-            throw InputError(fmt::format("cannot resume: plugin {} no longer holds method '{}'",
-                                         path, cell.spec.method));
+        if (std::ranges::find(plan.scenarios, cell.scenario, &scenario::Scenario::name) ==
+            plan.scenarios.end()) {
+            throw InputError(
+                fmt::format("{}: cell '{}' flies the scenario '{}', which is not "
+                            "among its scenarios; {}",
+                            where, cell.spec.id, cell.scenario, report::kCopyAgain));
         }
-        cell.params = make_params(*method, cell.spec.settings, where);
+        const MethodInfo& method = method_again(plugins, cell.spec.method);
+        cell.spec.plugin = method.plugin;
+        cell.params = make_params(method, cell.spec.settings, where);
         plan.cells.push_back(std::move(cell));
     }
     for (std::size_t i = 0; i < plan.scenarios.size(); ++i) {
