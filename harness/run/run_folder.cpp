@@ -76,7 +76,12 @@ void refuse_foreign_folder(const fs::path& path) {
         default: refuse("this is not a folder");
     }
     for (const char* document : {"run.json", "match.json"}) {
-        if (type_of(path / document) == fs::file_type::regular) return;
+        const fs::file_type type = type_of(path / document);
+        if (type == fs::file_type::regular) return;
+        if (type != fs::file_type::not_found) {
+            refuse(fmt::format("its {} is no plain file, but a link, pipe, folder or device",
+                               document));
+        }
     }
     std::error_code error;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end;

@@ -84,19 +84,49 @@ TEST(BrokenPlugins, lose_their_own_cell_only_with_status_and_reason) {
     }
 }
 
-TEST(BrokenPlugins, that_lower_the_limits_of_their_process_fail_alone) {
+/// Flies two repetitions of the plugin and of a healthy one; the cells of each method.
+std::map<std::string, std::vector<Json::Value>> beside_a_healthy_one(const std::string& plugin,
+                                                                     const std::string& method,
+                                                                     int status) {
     const ScratchFolder folder;
     const fs::path out = folder.path() / "out";
     const Finished finished = run_lodbench(
-        {"run", tiny_scenario(folder.path(), "repetitions = 1\n").string(), "--out", out.string(),
-         "--method", "lowers-limits", "--method", "healthy", "--plugin-dir",
-         broken_plugin_folder("lowers_limits"), "--plugin-dir", broken_plugin_folder("healthy")},
+        {"run", tiny_scenario(folder.path(), "repetitions = 2\n").string(), "--out", out.string(),
+         "--method", method, "--method", "healthy", "--plugin-dir", broken_plugin_folder(plugin),
+         "--plugin-dir", broken_plugin_folder("healthy")},
         folder.path());
-    EXPECT_EQ(finished.status, 3) << finished.output;
-    std::map<std::string, Json::Value> cells;
-    for (const Json::Value& cell : cells_of(out)) cells[cell["method"].asString()] = cell;
-    EXPECT_EQ(cells["lowers-limits"]["status"].asString(), "failed");
-    EXPECT_EQ(cells["healthy"]["status"].asString(), "ok") << cells["healthy"]["reason"];
+    EXPECT_EQ(finished.status, status) << finished.output;
+    std::map<std::string, std::vector<Json::Value>> cells;
+    for (const Json::Value& cell : cells_of(out)) cells[cell["method"].asString()].push_back(cell);
+    EXPECT_EQ(cells["healthy"].size(), 2U);
+    EXPECT_EQ(cells[method].size(), 2U);
+    for (const Json::Value& cell : cells["healthy"]) EXPECT_EQ(cell["status"], "ok");
+    return cells;
+}
+
+TEST(BrokenPlugins, that_use_up_or_lower_the_descriptors_of_their_process_fail_alone) {
+    for (const auto& [plugin, method] : {std::pair("lowers_limits", "lowers-limits"),
+                                         std::pair("leaks_descriptors", "leaks-descriptors")}) {
+        auto cells = beside_a_healthy_one(plugin, method, 3);
+        for (const Json::Value& cell : cells[method]) {
+            if (cell["repetition"] != 0) continue;  // only the first opens files: its pictures
+            EXPECT_EQ(cell["status"], "failed") << method;
+            EXPECT_THAT(cell["reason"].asString(), testing::HasSubstr("Too many open files"));
+        }
+    }
+}
+
+TEST(BrokenPlugins, that_hang_in_an_exit_handler_keep_the_result_that_was_written) {
+    auto cells = beside_a_healthy_one("hangs_at_exit", "hangs-at-exit", 0);
+    for (const Json::Value& cell : cells["hangs-at-exit"]) {
+        EXPECT_EQ(cell["status"], "ok") << cell["reason"];
+        ASSERT_GE(cell["warnings"].size(), 1U);
+        bool said = false;
+        for (const Json::Value& warning : cell["warnings"]) {
+            said |= warning.asString().find("after the result was written: ") == 0;
+        }
+        EXPECT_TRUE(said);
+    }
 }
 
 TEST(BrokenPlugins, that_do_not_load_are_refused_with_a_warning_and_recorded) {

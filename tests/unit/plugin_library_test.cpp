@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "run/plugin_library.h"
+#include "unit/raster_files.h"
 
 namespace lodbench::run {
 namespace {
@@ -49,9 +50,23 @@ TEST(PluginLibrary, a_constructor_that_prints_does_not_disturb_the_listing) {
     EXPECT_EQ(listing.methods[0].id, "constructor-prints");
 }
 
-TEST(PluginLibrary, two_plugins_with_one_id_are_both_refused_and_name_each_other) {
+TEST(PluginLibrary, of_two_plugins_with_one_id_that_of_the_earlier_folder_is_used) {
     const auto listings =
         list_plugins({broken("healthy").parent_path(), broken("duplicate").parent_path()});
+    ASSERT_EQ(listings.size(), 2U);
+    EXPECT_EQ(listings[0].refusal, "");
+    EXPECT_EQ(listings[0].methods.size(), 1U);
+    EXPECT_THAT(listings[1].refusal,
+                HasSubstr("its method id 'healthy' is also held by " + listings[0].path.string()));
+    EXPECT_TRUE(listings[1].methods.empty());
+}
+
+TEST(PluginLibrary, two_plugins_with_one_id_in_one_folder_are_both_refused_and_name_each_other) {
+    const test::TemporaryFolder folder;
+    for (const char* name : {"healthy", "duplicate"}) {
+        std::filesystem::copy_file(broken(name), folder.path() / broken(name).filename());
+    }
+    const auto listings = list_plugins({folder.path()});
     ASSERT_EQ(listings.size(), 2U);
     EXPECT_THAT(listings[0].refusal,
                 HasSubstr("its method id 'healthy' is also held by " + listings[1].path.string()));
