@@ -47,7 +47,7 @@ void CampaignOptions::add_to(CLI::App& command) {
     add_size(command, request.overrides.viewport);
     seed_option_ = add_seed(command, seed_, "seed of the order and of random choices");
     command.add_option("--repeat", request.overrides.repetitions, "repetitions of each cell")
-        ->check(CLI::Range(1, 10000));
+        ->check(CLI::Range(1, 1000));
     add_device(command, request.device);
     command.add_flag("--json", json, "print one JSON object instead of the table");
 }

@@ -11,6 +11,7 @@
 #include "cli/options.h"
 #include "platform/context.h"
 #include "report/json.h"
+#include "run/exit_status.h"
 #include "run/plugin_library.h"
 
 namespace lodbench::cli {
@@ -25,7 +26,9 @@ struct Options {
 
 int list_devices(bool json) {
     Json::Value array = Json::arrayValue;
+    int count = 0;
     for (const platform::DeviceEntry& device : platform::list_devices()) {
+        ++count;
         if (!json) {
             fmt::print("{:>3}  {}{}\n", device.number, device.name,
                        device.software ? "  (software)" : "");
@@ -38,7 +41,11 @@ int list_devices(bool json) {
         array.append(entry);
     }
     if (json) fmt::print("{}\n", report::to_text(array));
-    return 0;
+    if (count > 0) return run::kAllWell;
+    base::tell(
+        "lodbench: EGL names no device: no driver is installed, or none is found where "
+        "__EGL_VENDOR_LIBRARY_DIRS or the system says; install libegl-mesa0");
+    return run::kNothingMeasured;
 }
 
 int list_methods(const Options& options) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <map>
 #include <memory>
 
@@ -32,6 +33,9 @@ report::MatchTarget read_target(const Options& options) {
     using Quantity = report::MatchTarget::Quantity;
     report::MatchTarget target;
     target.metric = read_metric(options.metric);
+    if (!std::isfinite(options.tolerance_percent)) {  // which CLI11's ranges let through
+        throw InputError("--tolerance: expected a number of percent in 0.01..50");
+    }
     target.tolerance = options.tolerance_percent / 100;
     const int named = int(!options.error.empty()) + int(!options.triangles.empty()) +
                       int(!options.frame_ms.empty());

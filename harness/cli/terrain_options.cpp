@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdlib>
+
 #include <charconv>
 
 #include "api/error.h"
@@ -23,7 +26,14 @@ void add_overrides(CLI::App& command, TerrainOptions& options) {
 
 void add_file_overrides(CLI::App& command, TerrainOptions& options) {
     terrain::TerrainSource& source = options.source;
-    command.add_option("--vertical-scale", source.vertical_scale, "Metres per unit of the file");
+    command.add_option("--vertical-scale", source.vertical_scale, "Metres per unit of the file")
+        ->check([](const std::string& text) {
+            // As in a scenario: scaled by 0, every terrain is flat.
+            const double scale = std::strtod(text.c_str(), nullptr);
+            return std::isfinite(scale) && scale != 0
+                       ? std::string()
+                       : "the scale is " + text + ": expected a finite number, not 0";
+        });
     command.add_option("--vertical-offset", source.vertical_offset, "Metres, added after scaling");
     command.add_option("--no-data", source.no_data, "Value of samples without data; may be nan");
 }

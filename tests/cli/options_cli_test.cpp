@@ -97,5 +97,29 @@ TEST(Output, a_missing_folder_is_named_and_what_is_no_regular_file_stays) {
     EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
+TEST(Options, numbers_that_make_no_sense_are_refused_before_anything_is_read) {
+    const ScratchFolder folder;
+    const std::vector<std::vector<std::string>> commands = {
+        {"terrain", "info", "any.tif", "--vertical-scale", "0"},
+        {"terrain", "info", "any.tif", "--vertical-scale", "nan"},
+        {"match", "--error", "1", "--tolerance", "nan"},
+        {"run", "--repeat", "1001"}};
+    for (const auto& command : commands) {
+        const Finished finished = run_lodbench(command, folder.path());
+        EXPECT_EQ(finished.status, 2) << finished.output;
+        EXPECT_NE(finished.output.find(command[command.size() - 2]), std::string::npos)
+            << finished.output;
+    }
+}
+
+TEST(Options, devices_of_a_system_without_drivers_are_said_to_be_missing) {
+    const ScratchFolder folder;
+    const Finished finished = run_lodbench({"list", "--devices"}, folder.path(), [&] {
+        setenv("__EGL_VENDOR_LIBRARY_DIRS", folder.path().c_str(), 1);
+    });
+    EXPECT_EQ(finished.status, 4);
+    EXPECT_NE(finished.output.find("EGL names no device"), std::string::npos) << finished.output;
+}
+
 }  // namespace
 }  // namespace lodbench::test
