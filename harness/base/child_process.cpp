@@ -103,6 +103,7 @@ ChildProcess::ChildProcess(const std::function<int()>& body) {
     if (pid_ == 0) {
         setpgid(0, 0);
         prctl(PR_SET_PDEATHSIG, SIGKILL);
+        signal(SIGPIPE, SIG_DFL);  // for plugins, and for what they start
         // The parent may have died before the line above took effect.
         if (getppid() != parent) _exit(1);
         int status = 1;

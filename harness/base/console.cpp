@@ -12,6 +12,12 @@
 
 namespace lodbench::base {
 
+namespace {
+
+int first_error = 0;  // errno of the first write to standard output that failed
+
+}  // namespace
+
 void secure_standard_streams() {
     for (int descriptor = 0; descriptor <= 2; ++descriptor) {
         if (fcntl(descriptor, F_GETFD) >= 0) continue;
@@ -19,19 +25,25 @@ void secure_standard_streams() {
         (void)!open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY);
     }
     std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
 }
 
 void write_error(std::string_view text) noexcept {
     (void)write_all(STDERR_FILENO, text);
 }
 
+void write_output(std::string_view text) {
+    const std::string safe = plain(text);
+    if (std::fwrite(safe.data(), 1, safe.size(), stdout) != safe.size() && first_error == 0) {
+        first_error = errno;
+    }
+}
+
 std::string standard_output_error() {
-    errno = 0;
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return {};
-    // An earlier write may have failed, whose reason is gone.
-    std::string words = "cannot write standard output";
-    if (errno != 0) words += fmt::format(": {}", std::strerror(errno));
-    return words;
+    if (std::fflush(stdout) != 0 && first_error == 0) first_error = errno;
+    if (first_error == 0 && std::ferror(stdout) != 0) first_error = EIO;
+    if (first_error == 0) return {};
+    return fmt::format("cannot write standard output: {}", std::strerror(first_error));
 }
 
 }  // namespace lodbench::base

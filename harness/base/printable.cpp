@@ -7,9 +7,17 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 80;
 
-/// Bytes of the well-formed UTF-8 sequence at the start of `text`, 0 where there is none (Unicode
-/// standard, table 3-7).
-std::size_t sequence_length(std::string_view text) {
+std::string escaped(std::string_view bytes) {
+    std::string result;
+    for (const char c : bytes) {
+        result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+    return result;
+}
+
+}  // namespace
+
+std::size_t character_length(std::string_view text) {
     const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char lead = byte(0);
     if (lead < 0x80) return 1;
@@ -24,27 +32,16 @@ std::size_t sequence_length(std::string_view text) {
     return overlong || outside ? 0 : length;
 }
 
-/// C0, delete, and C1 (U+0080 to U+009F), which some terminals obey.
 bool is_control(std::string_view sequence) {
     const auto lead = static_cast<unsigned char>(sequence[0]);
     if (sequence.size() == 1) return lead < 0x20 || lead == 0x7F;
     return lead == 0xC2 && static_cast<unsigned char>(sequence[1]) < 0xA0;
 }
 
-std::string escaped(std::string_view bytes) {
-    std::string result;
-    for (const char c : bytes) {
-        result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-    }
-    return result;
-}
-
-}  // namespace
-
 std::string printable(std::string_view text) {
     std::string result = "\"";
     for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = sequence_length(text.substr(i));
+        const std::size_t length = character_length(text.substr(i));
         if (i + length > kMaxBytes || i >= kMaxBytes) {
             return result + "...\"";
         }
@@ -66,24 +63,11 @@ std::string printable(std::string_view text) {
 
 std::string plain(std::string_view text) {
     std::string result;
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = sequence_length(text.substr(i));
-        const std::string_view sequence = text.substr(i, length == 0 ? 1 : length);
-        const bool steers = length == 0 || (is_control(sequence) && sequence != "\n");
-        result += steers ? escaped(sequence) : std::string(sequence);
-        i += sequence.size();
-    }
-    return result;
-}
-
-std::string valid_utf8(std::string_view text) {
-    std::string result;
     result.reserve(text.size());
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = sequence_length(text.substr(i));
-        result += length == 0 ? "\xEF\xBF\xBD" : text.substr(i, length);
-        i += length == 0 ? 1 : length;
-    }
+    for_each_character(text, [&](std::string_view character, bool valid) {
+        const bool kept = character == "\n" || (valid && !is_control(character));
+        result += kept ? std::string(character) : escaped(character);
+    });
     return result;
 }
 

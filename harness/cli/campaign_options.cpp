@@ -27,9 +27,19 @@ std::string command_line() {
     return text;
 }
 
-std::filesystem::path default_out() {
-    return std::filesystem::path("lodbench-results") /
-           fmt::format("{:%Y-%m-%dT%H-%M-%SZ}", fmt::gmtime(std::time(nullptr)));
+/// A folder that this call made: runs that start in the same second get one each.
+std::filesystem::path make_default_out() {
+    const std::filesystem::path parent = "lodbench-results";
+    const std::string time = fmt::format("{:%Y-%m-%dT%H-%M-%SZ}", fmt::gmtime(std::time(nullptr)));
+    std::error_code error;
+    std::filesystem::create_directories(parent, error);
+    for (int number = 1; !error; ++number) {
+        const auto out = parent / (number == 1 ? time : fmt::format("{}-{}", time, number));
+        if (std::filesystem::create_directory(out, error)) return out;
+    }
+    throw EnvironmentError(fmt::format("cannot make a folder in {}: {}; choose another with --out",
+                                       std::filesystem::absolute(parent).string(),
+                                       error.message()));
 }
 
 }  // namespace
@@ -40,7 +50,8 @@ void CampaignOptions::add_to(CLI::App& command) {
     add_repeated(command, "--set", request.settings,
                  "METHOD.PARAMETER=VALUE[,VALUE...]; several values are swept");
     command.add_option("--out,-o", request.out,
-                       "results folder; default lodbench-results/<UTC date-time>");
+                       "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
+                       "where that is taken");
     add_plugin_dirs(command, request.plugin_dirs);
     command.add_option("--frames", request.overrides.frames, "frames of the flight")
         ->check(CLI::Range(1, 1000000));
@@ -65,7 +76,12 @@ void CampaignOptions::require_folder_to_resume() const {
 void CampaignOptions::finish() {
     if (*seed_option_) request.overrides.seed = seed_;
     request.command_line = command_line();
-    if (request.out.empty()) request.out = default_out();
+    if (request.out.empty()) request.out = made_ = make_default_out();
+}
+
+CampaignOptions::~CampaignOptions() {
+    std::error_code ignored;
+    if (!made_.empty()) std::filesystem::remove(made_, ignored);  // fails where it holds results
 }
 
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "run/campaign.h"
@@ -16,6 +17,12 @@ public:
     run::RunRequest request;
     bool json = false;
 
+    CampaignOptions() = default;
+    CampaignOptions(const CampaignOptions&) = delete;
+    CampaignOptions& operator=(const CampaignOptions&) = delete;
+    /// Removes the folder that `finish` made where nothing was written into it.
+    ~CampaignOptions();
+
     /// Adds --method, --set, --out, --plugin-dir, --frames, --size, --seed, --repeat, --device and
     /// --json.
     void add_to(CLI::App& command);
@@ -23,12 +30,14 @@ public:
     void add_resume(CLI::App& command, const char* help);
     /// Throws InputError for --resume without --out.
     void require_folder_to_resume() const;
-    /// Once the command line is read: seed, command line and, where none is named, the folder.
+    /// Once the command line is read: seed, command line and, where none is named, the folder,
+    /// which is made. Throws EnvironmentError.
     void finish();
 
 private:
     std::uint64_t seed_ = 0;
     CLI::Option* seed_option_ = nullptr;
+    std::filesystem::path made_;
 };
 
 /// Progress on standard error: one line redrawn on a terminal, a line for each finished cell

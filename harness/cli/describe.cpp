@@ -1,10 +1,9 @@
 // lodbench describe METHOD: its paper, parameters and promises.
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "base/console.h"
 #include "cli/commands.h"
 #include "cli/method_json.h"
 #include "cli/options.h"
@@ -23,22 +22,22 @@ struct Options {
 };
 
 void print(const run::MethodInfo& method) {
-    fmt::print("{}: {}\n", method.id, method.title);
-    if (!method.citation.empty()) fmt::print("paper      {}\n", method.citation);
-    fmt::print("version    {}\nplugin     {}\n", method.version, method.plugin.string());
-    fmt::print("quality    {}\n",
-               method.quality_knob.empty() ? "exact: no knob" : method.quality_knob);
-    fmt::print("claims     {}\n",
-               method.claimed_bound.empty()
-                   ? "no bound of the screen error"
-                   : method.claimed_bound +
-                         " bounds the screen error in pixels (its claim, not a measurement)");
-    for (const std::string& name : method.gl_extensions) fmt::print("needs      {}\n", name);
+    base::print("{}: {}\n", method.id, method.title);
+    if (!method.citation.empty()) base::print("paper      {}\n", method.citation);
+    base::print("version    {}\nplugin     {}\n", method.version, method.plugin.string());
+    base::print("quality    {}\n",
+                method.quality_knob.empty() ? "exact: no knob" : method.quality_knob);
+    base::print("claims     {}\n",
+                method.claimed_bound.empty()
+                    ? "no bound of the screen error"
+                    : method.claimed_bound +
+                          " bounds the screen error in pixels (its claim, not a measurement)");
+    for (const std::string& name : method.gl_extensions) base::print("needs      {}\n", name);
     if (method.params.empty()) return;
-    fmt::print("parameters\n");
+    base::print("parameters\n");
     for (const run::ParamInfo& param : method.params) {
-        fmt::print("  {:<18} {:<8} {:<10} {}\n  {:<18} {}\n", param.name, type_words(param),
-                   default_words(param), range_words(param), "", param.help);
+        base::print("  {:<18} {:<8} {:<10} {}\n  {:<18} {}\n", param.name, type_words(param),
+                    default_words(param), range_words(param), "", param.help);
     }
 }
 
@@ -46,7 +45,7 @@ int describe(const Options& options) {
     const auto plugins = find_plugins(options.plugin_dirs);
     const run::MethodInfo& method = run::find_method(plugins, options.method, "describe");
     if (options.json) {
-        fmt::print("{}\n", report::to_text(method_json(method)));
+        base::print("{}\n", report::to_text(method_json(method)));
     } else {
         print(method);
     }

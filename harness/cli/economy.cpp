@@ -87,9 +87,9 @@ int economy(Options& options) {
     const std::string text = economy_text(outcome.cells);
     report::write_whole(outcome.out / "economy.md", "# lodbench economy\n\n" + text);
     if (options.json) {
-        fmt::print("{}\n", report::to_text(to_json(outcome)));
+        base::print("{}\n", report::to_text(to_json(outcome)));
     } else {
-        fmt::print("\n{}\nresults   {}\n", text, outcome.out.string());
+        base::print("\n{}\nresults   {}\n", text, outcome.out.string());
     }
     if (!outcome.error.empty()) base::tell("lodbench: {}", outcome.error);
     return outcome.exit_status();

@@ -1,7 +1,5 @@
 // lodbench list: which methods there are, which plugins cannot be used and why, which devices.
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -30,8 +28,8 @@ int list_devices(bool json) {
     for (const platform::DeviceEntry& device : platform::list_devices()) {
         ++count;
         if (!json) {
-            fmt::print("{:>3}  {}{}\n", device.number, device.name,
-                       device.software ? "  (software)" : "");
+            base::print("{:>3}  {}{}\n", device.number, device.name,
+                        device.software ? "  (software)" : "");
             continue;
         }
         Json::Value entry;
@@ -40,7 +38,7 @@ int list_devices(bool json) {
         entry["software"] = device.software;
         array.append(entry);
     }
-    if (json) fmt::print("{}\n", report::to_text(array));
+    if (json) base::print("{}\n", report::to_text(array));
     if (count > 0) return run::kAllWell;
     base::tell(
         "lodbench: EGL names no device: no driver is installed, or none is found where "
@@ -63,10 +61,10 @@ int list_methods(const Options& options) {
         }
         for (const run::MethodInfo& method : plugin.methods) {
             object["methods"].append(method_json(method));
-            if (!options.json) fmt::print("{:<20} {}\n", method.id, method.title);
+            if (!options.json) base::print("{:<20} {}\n", method.id, method.title);
         }
     }
-    if (options.json) fmt::print("{}\n", report::to_text(object));
+    if (options.json) base::print("{}\n", report::to_text(object));
     return 0;
 }
 

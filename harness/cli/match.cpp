@@ -112,9 +112,9 @@ int match(Options& options) {
         Json::Value object = to_json(outcome.campaign);
         object["match"] = report::to_json(run::match_record(target, outcome.methods));
         object["trade"] = report::to_json(rows);
-        fmt::print("{}\n", report::to_text(object));
+        base::print("{}\n", report::to_text(object));
     } else {
-        fmt::print("\n{}\nresults   {}\n", text, outcome.campaign.out.string());
+        base::print("\n{}\nresults   {}\n", text, outcome.campaign.out.string());
     }
     if (!outcome.campaign.error.empty()) {
         base::tell("lodbench: {}", outcome.campaign.error);

@@ -164,7 +164,7 @@ int run_mesh(const MeshOptions& options) {
     });
     using base::Ending;
     switch (answer.ending) {
-        case Ending::answered: fmt::print("{}\n", answer.text); return run::kAllWell;
+        case Ending::answered: base::print("{}\n", answer.text); return run::kAllWell;
         case Ending::refused: throw InputError(answer.text);
         case Ending::no_means: throw EnvironmentError(answer.text);
         case Ending::threw: base::tell("lodbench: {}", answer.text); return run::kCellFailed;

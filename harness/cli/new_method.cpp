@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "report/results.h"
@@ -163,8 +164,8 @@ std::string quoted(const fs::path& path) {
 }
 
 void print_steps(const fs::path& folder, const std::vector<std::string>& steps) {
-    fmt::print("{} is a method that flies. Next:\n", folder.string());
-    for (const std::string& step : steps) fmt::print("  {}\n", step);
+    base::print("{} is a method that flies. Next:\n", folder.string());
+    for (const std::string& step : steps) base::print("  {}\n", step);
 }
 
 void new_method(const std::string& id, const std::string& directory) {

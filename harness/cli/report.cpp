@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/commands.h"
 #include "report/html/report.h"
 #include "report/results.h"
@@ -60,9 +61,9 @@ void write(const ReportOptions& options) {
         options.out.empty() ? options.folders.front() / "report.html" : options.out;
     if (!options.csv.empty()) write_csv(options.csv, page.csv);
     report::write_whole(out, page.html);
-    fmt::print("report    {}\n", fs::absolute(out).lexically_normal().string());
+    base::print("report    {}\n", fs::absolute(out).lexically_normal().string());
     if (!options.csv.empty()) {
-        fmt::print("tables    {}\n", fs::absolute(options.csv).lexically_normal().string());
+        base::print("tables    {}\n", fs::absolute(options.csv).lexically_normal().string());
     }
 }
 

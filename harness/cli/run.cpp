@@ -23,12 +23,12 @@ struct Options : CampaignOptions {
 
 void print_outcome(const run::CampaignOutcome& outcome, bool json) {
     if (json) {
-        fmt::print("{}\n", report::to_text(to_json(outcome)));
+        base::print("{}\n", report::to_text(to_json(outcome)));
         return;
     }
-    fmt::print("\n{}\n", report::text_table(report::table_rows(outcome.cells, outcome.seed)));
-    fmt::print("results   {}\npictures  {}\n", outcome.out.string(),
-               (outcome.out / "shots").string());
+    base::print("\n{}\n", report::text_table(report::table_rows(outcome.cells, outcome.seed)));
+    base::print("results   {}\npictures  {}\n", outcome.out.string(),
+                (outcome.out / "shots").string());
 }
 
 int fly(Options& options) {

@@ -112,9 +112,9 @@ int sweep(Options& options) {
     if (options.json) {
         Json::Value object = to_json(outcome);
         object["trade"] = report::to_json(rows);
-        fmt::print("{}\n", report::to_text(object));
+        base::print("{}\n", report::to_text(object));
     } else {
-        fmt::print("\n{}\nresults   {}\n", text, outcome.out.string());
+        base::print("\n{}\nresults   {}\n", text, outcome.out.string());
     }
     if (!outcome.error.empty()) base::tell("lodbench: {}", outcome.error);
     return outcome.exit_status();

@@ -1,11 +1,10 @@
 // lodbench terrain errors: the a-priori refinement criteria of longest-edge bisection, to look at
 // and to check with other tools.
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <memory>
 
+#include "base/console.h"
 #include "cli/terrain_options.h"
 #include "common/leb_errors.h"
 #include "report/json.h"
@@ -76,16 +75,16 @@ void run(const Options& options, const CLI::App& command) {
         object["centre_error_m"] = centre.error;
         object["centre_radius_m"] = centre.radius;
         object["written"] = options.output;
-        fmt::print("{}\n", report::to_text(object, true));
+        base::print("{}\n", report::to_text(object, true));
         return;
     }
-    fmt::print("name      {}\n", info.name);
-    fmt::print("size      {} rows x {} columns, padded to {} x {}\n", info.rows, info.columns,
-               grid.size(), grid.size());
-    fmt::print("scheme    {}, {} errors, {:.1f} ms, {:.2f} ns a sample\n", options.scheme,
-               options.error, seconds * 1e3, seconds * 1e9 / double(grid.vertex_count()));
-    fmt::print("centre    error {} m, radius {} m\n", centre.error, centre.radius);
-    fmt::print("written   {}: channels error and radius, metres\n", options.output);
+    base::print("name      {}\n", info.name);
+    base::print("size      {} rows x {} columns, padded to {} x {}\n", info.rows, info.columns,
+                grid.size(), grid.size());
+    base::print("scheme    {}, {} errors, {:.1f} ms, {:.2f} ns a sample\n", options.scheme,
+                options.error, seconds * 1e3, seconds * 1e9 / double(grid.vertex_count()));
+    base::print("centre    error {} m, radius {} m\n", centre.error, centre.radius);
+    base::print("written   {}: channels error and radius, metres\n", options.output);
 }
 
 }  // namespace

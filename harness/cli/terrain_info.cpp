@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "base/console.h"
 #include "cli/terrain_options.h"
 #include "report/json.h"
 #include "terrain/open_terrain.h"
@@ -52,13 +53,13 @@ void print_store(const TerrainText& text) {
     const TerrainInfo& info = text.info;
     const terrain::StoreLayout layout(info.rows, info.columns, *text.store);
     const TilePyramid& pyramid = layout.pyramid();
-    fmt::print("samples   {}\n", text.store->text());
-    fmt::print("levels    {}:", pyramid.levels());
+    base::print("samples   {}\n", text.store->text());
+    base::print("levels    {}:", pyramid.levels());
     for (int level = 0; level < pyramid.levels(); ++level) {
-        fmt::print(" {} x {}", pyramid.rows(level), pyramid.columns(level));
+        base::print(" {} x {}", pyramid.rows(level), pyramid.columns(level));
     }
-    fmt::print("\ntiles     {} of {} bytes\n", pyramid.count(), layout.record_bytes());
-    fmt::print("bytes     {}\n", layout.file_bytes());
+    base::print("\ntiles     {} of {} bytes\n", pyramid.count(), layout.record_bytes());
+    base::print("bytes     {}\n", layout.file_bytes());
 }
 
 void run(const TerrainOptions& options, const CLI::App& command) {
@@ -83,30 +84,30 @@ void run(const TerrainOptions& options, const CLI::App& command) {
 
 void print(const TerrainText& text, bool json) {
     if (json) {
-        fmt::print("{}\n", report::to_text(json_of(text), true));
+        base::print("{}\n", report::to_text(json_of(text), true));
         return;
     }
     const TerrainInfo& info = text.info;
     const glm::dvec2 extent = info.extent_max() - info.extent_min();
-    fmt::print("name      {}\n", info.name);
-    fmt::print("source    {}\n", text.kind);
-    fmt::print("size      {} rows x {} columns\n", info.rows, info.columns);
-    fmt::print("heights   {} to {} m\n", info.min_height, info.max_height);
-    fmt::print("spacing   {:.6g} m east, {:.6g} m north{}\n", info.spacing.x, info.spacing.y,
-               text.spacing_assumed ? " (assumed: the file does not say; give --spacing)" : "");
-    fmt::print("extent    {:.6g} x {:.6g} m, from ({:.2f}, {:.2f})\n", extent.x, extent.y,
-               info.origin.x, info.origin.y);
-    fmt::print("voids     {} filled\n", info.void_count);
-    fmt::print("checksum  {}\n", info.checksum);
+    base::print("name      {}\n", info.name);
+    base::print("source    {}\n", text.kind);
+    base::print("size      {} rows x {} columns\n", info.rows, info.columns);
+    base::print("heights   {} to {} m\n", info.min_height, info.max_height);
+    base::print("spacing   {:.6g} m east, {:.6g} m north{}\n", info.spacing.x, info.spacing.y,
+                text.spacing_assumed ? " (assumed: the file does not say; give --spacing)" : "");
+    base::print("extent    {:.6g} x {:.6g} m, from ({:.2f}, {:.2f})\n", extent.x, extent.y,
+                info.origin.x, info.origin.y);
+    base::print("voids     {} filled\n", info.void_count);
+    base::print("checksum  {}\n", info.checksum);
     if (text.store) print_store(text);
     if (text.written.empty()) return;
     if (!text.store) {
-        fmt::print("written   {0} and {0}.toml\n", text.written);
+        base::print("written   {0} and {0}.toml\n", text.written);
         return;
     }
     const double megabytes = 4e-6 * info.rows * double(info.columns);
-    fmt::print("written   {} in {:.1f} s, {:.0f} MB/s of float32 samples\n", text.written,
-               text.seconds, megabytes / text.seconds);
+    base::print("written   {} in {:.1f} s, {:.0f} MB/s of float32 samples\n", text.written,
+                text.seconds, megabytes / text.seconds);
 }
 
 void add_terrain_info(CLI::App& parent) {

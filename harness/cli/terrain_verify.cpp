@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/terrain_options.h"
 #include "report/json.h"
 #include "run/exit_status.h"
@@ -40,16 +41,16 @@ int run(const VerifyOptions& options) {
         object["fault_count"] = Json::UInt64(report.fault_count);
         object["faults"] = Json::arrayValue;
         for (const std::string& fault : report.faults) object["faults"].append(fault);
-        fmt::print("{}\n", report::to_text(object, true));
+        base::print("{}\n", report::to_text(object, true));
         return status;
     }
-    for (const std::string& fault : report.faults) fmt::print("{}: {}\n", options.file, fault);
+    for (const std::string& fault : report.faults) base::print("{}: {}\n", options.file, fault);
     if (report.fault_count > report.faults.size()) {
-        fmt::print("{}: {} more\n", options.file, report.fault_count - report.faults.size());
+        base::print("{}: {} more\n", options.file, report.fault_count - report.faults.size());
     }
-    fmt::print("{}: {} tiles, {} {}, {:.1f} s, {:.0f} MB/s\n", options.file, report.tiles,
-               report.fault_count, report.fault_count == 1 ? "fault" : "faults", seconds,
-               double(report.bytes) * 1e-6 / seconds);
+    base::print("{}: {} tiles, {} {}, {:.1f} s, {:.0f} MB/s\n", options.file, report.tiles,
+                report.fault_count, report.fault_count == 1 ? "fault" : "faults", seconds,
+                double(report.bytes) * 1e-6 / seconds);
     return status;
 }
 

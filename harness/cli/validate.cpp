@@ -4,12 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "conformance/suite.h"
@@ -31,7 +34,7 @@ struct ValidateOptions {
 
 void list_checks() {
     for (const conformance::Check& check : conformance::all_checks()) {
-        fmt::print("{:<28} {}\n", check.name, check.promise);
+        base::print("{:<28} {}\n", check.name, check.promise);
     }
 }
 
@@ -95,10 +98,10 @@ void print_line(const ValidateOptions& options, const std::string& method,
         line["reason"] = report.reason;
         line["seconds"] = report.seconds;
         line["seed"] = Json::UInt64(options.seed);
-        fmt::print("{}\n", report::to_text(line));
+        base::print("{}\n", report::to_text(line));
     } else {
-        fmt::print("{:<8} {} {} ({:.1f} s){}{}\n", verdict, method, report.check, report.seconds,
-                   report.reason.empty() ? "" : ": ", report.reason);
+        base::print("{:<8} {} {} ({:.1f} s){}{}\n", verdict, method, report.check, report.seconds,
+                    report.reason.empty() ? "" : ": ", report.reason);
     }
     std::fflush(stdout);
 }
@@ -143,14 +146,14 @@ int run_validate(const ValidateOptions& options) {
             skipped += report.verdict == conformance::Verdict::skipped;
             print_line(options, method.id, report);
             if (report.verdict == conformance::Verdict::failed && !options.json) {
-                fmt::print("         again: {}\n",
-                           repeat_command(options, method.id, settings, check.name));
+                base::print("         again: {}\n",
+                            repeat_command(options, method.id, settings, check.name));
             }
         }
     }
     if (!options.json) {
-        fmt::print("{} passed, {} failed, {} skipped, seed {}\n", passed, failed, skipped,
-                   options.seed);
+        base::print("{} passed, {} failed, {} skipped, seed {}\n", passed, failed, skipped,
+                    options.seed);
     }
     if (failed > 0) return run::kPromiseBroken;
     return passed > 0 ? run::kAllWell : run::kNothingMeasured;
@@ -170,7 +173,12 @@ void add_validate(CLI::App& app, int& status) {
     add_device(*command, options->device);
     command
         ->add_option("--time-factor", options->time_factor, "stretches each test's time limit; 1")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::PositiveNumber)
+        ->check([](const std::string& text) {  // which nan passes as well
+            return std::isfinite(std::strtod(text.c_str(), nullptr))
+                       ? std::string()
+                       : "the factor is " + text + ": expected a finite number";
+        });
     command->add_flag("--json", options->json, "print one JSON object a line");
     command->add_flag("--list", options->list, "list the tests and what each promises");
     command->callback([options, &status] { status = run_validate(*options); });

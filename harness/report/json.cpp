@@ -48,12 +48,28 @@ Json::Value parse_json(std::string_view text, const std::string& where) {
     return value;
 }
 
-std::string to_text(const Json::Value& value, bool indented) {
+std::string exact_text(const Json::Value& value, bool indented) {
     Json::StreamWriterBuilder builder;
     builder["indentation"] = indented ? "  " : "";
     builder["precision"] = 15;  // 0.1 stays 0.1
     builder["emitUTF8"] = true;
-    return base::valid_utf8(Json::writeString(builder, value));
+    return Json::writeString(builder, value);
+}
+
+std::string to_text(const Json::Value& value, bool indented) {
+    const std::string exact = exact_text(value, indented);
+    std::string text;
+    text.reserve(exact.size());
+    base::for_each_character(exact, [&](std::string_view character, bool valid) {
+        if (!valid) {
+            text += base::kReplacement;
+        } else if (base::is_control(character) && character != "\n") {  // DEL and C1, in a string
+            text += fmt::format("\\u{:04x}", static_cast<unsigned char>(character.back()));
+        } else {
+            text += character;
+        }
+    });
+    return text;
 }
 
 std::string checksum_of(std::string_view text) {

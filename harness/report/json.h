@@ -13,8 +13,13 @@ namespace lodbench::report {
 [[nodiscard]] Json::Value parse_json(std::string_view text, const std::string& where);
 
 /// On one line, or indented by two blanks. Numbers that are not finite become null: JSON has none.
-/// Bytes that are not UTF-8, of a file's name for instance, become U+FFFD.
+/// Bytes that are not UTF-8, of a file's name for instance, become U+FFFD, and no raw
+/// control character stands in it.
 [[nodiscard]] std::string to_text(const Json::Value& value, bool indented = false);
+
+/// As `to_text`, but texts keep their bytes, whatever they are: for paths that lodbench hands to a
+/// process of its own.
+[[nodiscard]] std::string exact_text(const Json::Value& value, bool indented = false);
 
 /// 16 hex digits over the bytes of a text.
 [[nodiscard]] std::string checksum_of(std::string_view text);

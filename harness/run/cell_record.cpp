@@ -150,7 +150,7 @@ std::string write_spec(const CellSpec& spec) {
     json["seed"] = Json::UInt64(spec.seed);
     json["device"] = spec.device;
     json["out"] = spec.out.string();
-    return report::to_text(json);
+    return report::exact_text(json);
 }
 
 CellSpec read_spec(std::string_view text, const std::string& where) {

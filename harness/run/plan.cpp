@@ -82,6 +82,9 @@ std::vector<Settings> combinations(const scenario::MethodRequest& request, int r
     return result;
 }
 
+/// Of a cell's id, in bytes: file systems take 255, and what is appended needs some.
+constexpr std::size_t kLongestId = 220;
+
 /// Safe as a file name.
 std::string cell_id(const std::string& method, const Settings& settings,
                     const std::string& scenario, int repetition) {
@@ -207,6 +210,12 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
                 for (int repetition = 0; repetition < scenario.repetitions; ++repetition) {
                     CellSpec spec;
                     spec.id = cell_id(method.id, settings, scenario.name, repetition);
+                    if (spec.id.size() > kLongestId) {
+                        throw InputError(fmt::format(
+                            "{}: a cell's files are named after its settings, and the name would "
+                            "have {} characters, at most {}; write shorter values or names",
+                            wanted.where, spec.id.size(), kLongestId));
+                    }
                     if (!ids.insert(spec.id).second) {
                         if (repetition == 0)
                             plan.warnings.push_back(spec.id + " is asked for twice and flown once");

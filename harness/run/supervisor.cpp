@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -258,6 +259,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
 }
 
 int serve_cell(int spec_descriptor, int signs_descriptor, int result_descriptor) {
+    signal(SIGPIPE, SIG_DFL);  // for plugins, and for what they start
     const SharedSigns signs(signs_descriptor);
     signs->enter(Call::start);
     CellSpec spec;

@@ -122,7 +122,10 @@ constexpr std::pair<std::string_view, Setter> kKeys[] = {
     {"spacing", set_spacing},
     {"origin", set_origin},
     {"vertical_scale",
-     [](Sidecar& sidecar, const Entry& entry) { sidecar.vertical_scale = entry.finite(); }},
+     [](Sidecar& sidecar, const Entry& entry) {
+         sidecar.vertical_scale = entry.finite();
+         if (sidecar.vertical_scale == 0) entry.refuse("must not be 0");
+     }},
     {"vertical_offset",
      [](Sidecar& sidecar, const Entry& entry) { sidecar.vertical_offset = entry.finite(); }},
     {"no_data",

@@ -52,6 +52,60 @@ TEST(CommandLine, an_unknown_method_is_refused_alike_by_every_command) {
     }
 }
 
+TEST(CommandLine, values_that_no_measurement_can_use_are_refused_before_any_flight) {
+    const ScratchFolder folder;
+    const std::string scenario = tiny_scenario(folder.path(), "repetitions = 1\n").string();
+    const std::string out = (folder.path() / "out").string();
+    std::ofstream(folder.path() / "hill.asc")
+        << "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n";
+    const std::string hill = (folder.path() / "hill.asc").string();
+    const std::string long_value = "pgm.aspect=1." + std::string(300, '0');
+    struct {
+        std::vector<std::string> arguments;
+        const char* words;
+    } const refused[] = {
+        {{"terrain", "info", hill, "--vertical-scale", "0"}, "expected a finite number, not 0"},
+        {{"match", scenario, "--error", "1px", "--tolerance", "nan", "--out", out},
+         "expected a number of percent"},
+        {{"validate", "--time-factor", "nan", "x.so"}, "expected a finite number"},
+        {{"run", scenario, "--repeat", "1001", "--out", out}, "1 to 1000"},
+        {{"run", scenario, "--method", "pgm", "--set", long_value, "--out", out},
+         "write shorter values"},
+    };
+    for (const auto& [arguments, words] : refused) {
+        const Finished finished = run_lodbench(arguments, folder.path());
+        EXPECT_EQ(finished.status, 2) << finished.output;
+        EXPECT_THAT(finished.output, HasSubstr(words));
+        EXPECT_FALSE(fs::exists(out));
+    }
+    std::ofstream(hill + ".toml") << "vertical_scale = 0\n";
+    const Finished sidecar = run_lodbench({"terrain", "info", hill}, folder.path());
+    EXPECT_EQ(sidecar.status, 2) << sidecar.output;
+    EXPECT_THAT(sidecar.output, HasSubstr("must not be 0"));
+}
+
+TEST(DefaultFolder, runs_that_start_together_get_one_each_and_a_refused_run_leaves_none) {
+    const ScratchFolder folder;
+    const std::string scenario = tiny_scenario(folder.path(), "repetitions = 1\n").string();
+    const auto there = [&] { fs::current_path(folder.path()); };
+    std::vector<pid_t> runs;
+    for (const char* log : {"a", "b", "c"}) {
+        runs.push_back(start_lodbench({"run", scenario, "--method", "template", "--no-truth"},
+                                      folder.path() / log, there));
+    }
+    for (const pid_t run : runs) {
+        int status = -1;
+        waitpid(run, &status, 0);
+        EXPECT_EQ(status, 0);
+    }
+    const auto count = [&] {
+        return std::distance(fs::directory_iterator(folder.path() / "lodbench-results"), {});
+    };
+    EXPECT_EQ(count(), 3);
+    EXPECT_EQ(run_lodbench({"run", "none.toml"}, folder.path(), there).status, 2);
+    EXPECT_EQ(count(), 3);
+}
+
 TEST(Resume, refuses_arguments_that_contradict_the_run_and_takes_the_same_again) {
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "repetitions = 1\n").string();

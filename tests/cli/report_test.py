@@ -159,6 +159,15 @@ class Report(unittest.TestCase):
         page, _ = self.make(write_folder(self.root / "plain", [cell("a__r0"), cell("b__r0", method="b")]))
         self.assertEqual(page.rows("hypervolume"), [])
 
+    def test_a_csv_field_is_no_formula_and_numbers_stay_numbers(self):
+        failures = ["=1+1", "+cmd", "-2+3", "@SUM(A1)", "-1.5", "+2", "-"]
+        methods = [searched(f"m{i}", failure=text) for i, text in enumerate(failures)]
+        self.make(write_folder(self.root / "run", [cell("m0", method="m0", time=1)], match=match(methods)),
+                  more=["--csv", self.root / "csv"])
+        with open(self.root / "csv" / "match.csv", newline="") as stream:
+            written = [row["failure"] for row in csv.DictReader(stream)]
+        self.assertEqual(written, ["'=1+1", "'+cmd", "'-2+3", "'@SUM(A1)", "-1.5", "+2", "-"])
+
     def test_equal_accuracy_is_what_match_found_and_what_its_cells_cost(self):
         methods = [searched("lindstrom", probes=[(1.0, 0.9), (4.0, "inf"), (2.125, 2.03125)], taken=2.125),
                    searched("pgm", "grid", [(240.0, 8.5), (2048.0, 3.5), (4096.0, None)], 2048.0, "unreachable", False,

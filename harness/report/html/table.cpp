@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <string_view>
 
 #include "report/html/text.h"
@@ -10,8 +11,18 @@ namespace lodbench::report::html {
 
 namespace {
 
-std::string csv_field(std::string_view text) {
-    if (text.find_first_of("\",\r\n") == text.npos) return std::string(text);
+bool is_number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    return read.ec == std::errc() && read.ptr == text.data() + text.size();
+}
+
+/// What a spreadsheet would take for a formula gets an apostrophe in front.
+std::string csv_field(std::string_view field) {
+    const bool formula = field.find_first_of("=+-@\t\r") == 0 && field != "-" && !is_number(field);
+    const std::string text = (formula ? "'" : "") + std::string(field);
+    if (text.find_first_of("\",\r\n") == text.npos) return text;
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"') result += '"';

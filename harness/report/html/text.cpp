@@ -6,47 +6,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/printable.h"
+
 namespace lodbench::report::html {
 
 namespace {
 
-constexpr std::string_view kReplacement = "\uFFFD";
 constexpr std::string_view kNarrowSpace = "\u202F";
-
-/// Bytes of the UTF-8 character that `text` begins with; 0 where it begins with none.
-std::size_t character_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned lead = byte(0);
-    if (lead < 0x80) return 1;
-    const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-    if (lead < 0xC2 || lead > 0xF4 || text.size() < length) return 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xC0) != 0x80) return 0;
-    }
-    // Longer than need be, a surrogate, or beyond the last code point.
-    const bool wrong = (lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) >= 0xA0) ||
-                       (lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) >= 0x90);
-    return wrong ? 0 : length;
-}
 
 /// Calls `put` with each character, one that may not stand in a page as U+FFFD.
 template <typename Put>
-void for_each_character(std::string_view text, const Put& put) {
-    while (!text.empty()) {
-        const std::size_t length = character_length(text);
-        const auto lead = static_cast<unsigned char>(text[0]);
-        const bool control =
-            (lead < 0x20 && lead != '\t' && lead != '\n') || lead == 0x7F ||
-            (lead == 0xC2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xA0);
-        put(length == 0 || control ? kReplacement : text.substr(0, length));
-        text.remove_prefix(std::max<std::size_t>(length, 1));
-    }
+void for_each_shown(std::string_view text, const Put& put) {
+    base::for_each_character(text, [&](std::string_view character, bool valid) {
+        const bool layout = character == "\n" || character == "\t";
+        put(layout || (valid && !base::is_control(character)) ? character : base::kReplacement);
+    });
 }
 
 std::string valid(std::string_view text) {
     std::string result;
     result.reserve(text.size());
-    for_each_character(text, [&](std::string_view character) { result += character; });
+    for_each_shown(text, [&](std::string_view character) { result += character; });
     return result;
 }
 
@@ -69,7 +49,7 @@ Json::Value valid(const Json::Value& value) {
 std::string escape(std::string_view text) {
     std::string result;
     result.reserve(text.size());
-    for_each_character(text, [&](std::string_view character) {
+    for_each_shown(text, [&](std::string_view character) {
         switch (character[0]) {
             case '&': result += "&amp;"; break;
             case '<': result += "&lt;"; break;
