@@ -71,6 +71,40 @@ std::vector<std::string> failures_of(const CellGroup& group) {
     return failures;
 }
 
+std::vector<std::string> disagreements_of(const CellGroup& group) {
+    struct Figure {
+        const char* key;
+        const char* inner;
+        const char* words;
+    };
+    static constexpr Figure kLockstep[] = {
+        {"triangles", "mean", "triangles a frame"},
+        {"triangles", "min", "the least triangles of a frame"},
+        {"triangles", "max", "the most triangles of a frame"},
+        {"draw_calls", "mean", "draw calls a frame"},
+        {"samples_prepared", nullptr, "samples asked for in preparation"},
+        {"shots_hash", nullptr, "hashes of the depth images"},
+    };
+    std::vector<std::string> texts;
+    for (const Figure& figure : kLockstep) {
+        const Json::Value* first = nullptr;
+        for (const Json::Value* cell : group.good) {
+            const Json::Value& value = member_of(*cell, figure.key, figure.inner);
+            if (value.isNull()) continue;  // not measured, or of an older version
+            if (first == nullptr) first = cell;
+            const Json::Value& expected = member_of(*first, figure.key, figure.inner);
+            if (value == expected) continue;
+            texts.push_back(fmt::format(
+                "{} differ between repetitions: {} in repetition {}, {} in repetition {}; its "
+                "figures are those of more than one picture",
+                figure.words, value_text(expected), (*first)["repetition"].asInt(),
+                value_text(value), (*cell)["repetition"].asInt()));
+            break;
+        }
+    }
+    return texts;
+}
+
 std::string value_text(const Json::Value& value) {
     if (value.isString()) return value.asString();
     if (value.isBool()) return value.asBool() ? "true" : "false";

@@ -30,6 +30,10 @@ struct CellGroup {
 /// "status (repetition n): reason" of those that are not ok.
 [[nodiscard]] std::vector<std::string> failures_of(const CellGroup& group);
 
+/// In lockstep one camera gives one selection, so repetitions count and draw the same: in words,
+/// what did not.
+[[nodiscard]] std::vector<std::string> disagreements_of(const CellGroup& group);
+
 /// A parameter's value as text.
 [[nodiscard]] std::string value_text(const Json::Value& value);
 

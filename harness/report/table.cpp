@@ -31,6 +31,27 @@ std::string fps_text(const std::vector<const Json::Value*>& cells, std::uint64_t
     return fmt::format("{:.1f} ({:.1f}..{:.1f})", interval->centre, interval->low, interval->high);
 }
 
+/// What is folded away below the tables, in Markdown.
+class Fold {
+public:
+    explicit Fold(const char* title) : title_(title) {}
+    void add(const TableRow& row, const std::string& words) {
+        lines_ += fmt::format("- {}, {}: {}\n", markdown_text(row.label),
+                              markdown_text(row.scenario), markdown_text(words));
+        ++count_;
+    }
+    [[nodiscard]] std::string text() const {
+        if (count_ == 0) return {};
+        return fmt::format("\n<details><summary>{}: {}</summary>\n\n{}\n</details>\n", title_,
+                           count_, lines_);
+    }
+
+private:
+    const char* title_;
+    std::string lines_;
+    std::size_t count_ = 0;
+};
+
 }  // namespace
 
 const std::vector<std::string>& table_columns() {
@@ -43,7 +64,7 @@ const std::vector<std::string>& table_columns() {
 std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uint64_t seed) {
     std::vector<TableRow> rows;
     for (const CellGroup& group : group_cells(cells)) {
-        TableRow row{group.scenario, group.label, {}, failures_of(group)};
+        TableRow row{group.scenario, group.label, {}, failures_of(group), disagreements_of(group)};
         const auto& good = group.good;
         row.fields = {fps_text(good, seed),
                       median(numbers_of(good, "frame_ms", "median"), "{:.3f}"),
@@ -82,6 +103,7 @@ std::string text_table(const std::vector<TableRow>& rows) {
     };
     std::string text;
     std::string failures;
+    std::string warnings;
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const TableRow& row = rows[r];
         if (r == 0 || row.scenario != rows[r - 1].scenario) {
@@ -92,7 +114,11 @@ std::string text_table(const std::vector<TableRow>& rows) {
         for (const std::string& failure : row.failures) {
             failures += fmt::format("  {}, {}: {}\n", row.label, row.scenario, failure);
         }
+        for (const std::string& warning : row.warnings) {
+            warnings += fmt::format("  {}, {}: {}\n", row.label, row.scenario, warning);
+        }
     }
+    if (!warnings.empty()) text += "\nWarnings\n" + warnings;
     if (!failures.empty()) text += "\nNot measured\n" + failures;
     return text;
 }
@@ -121,8 +147,8 @@ std::string markdown_text(const std::string& text) {
 
 std::string markdown_table(const std::vector<TableRow>& rows) {
     std::string text;
-    std::string failures;
-    std::size_t failure_count = 0;
+    Fold warnings{"Warnings"};
+    Fold failures{"Not measured"};
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const TableRow& row = rows[r];
         if (r == 0 || row.scenario != rows[r - 1].scenario) {
@@ -133,17 +159,10 @@ std::string markdown_table(const std::vector<TableRow>& rows) {
         }
         text +=
             fmt::format("| {} | {} |\n", markdown_text(row.label), fmt::join(row.fields, " | "));
-        for (const std::string& failure : row.failures) {
-            failures += fmt::format("- {}, {}: {}\n", markdown_text(row.label),
-                                    markdown_text(row.scenario), markdown_text(failure));
-            ++failure_count;
-        }
+        for (const std::string& warning : row.warnings) warnings.add(row, warning);
+        for (const std::string& failure : row.failures) failures.add(row, failure);
     }
-    if (failure_count > 0) {
-        text += fmt::format("\n<details><summary>Not measured: {}</summary>\n\n{}\n</details>\n",
-                            failure_count, failures);
-    }
-    return text;
+    return text + warnings.text() + failures.text();
 }
 
 }  // namespace lodbench::report

@@ -14,6 +14,7 @@ struct TableRow {
     std::string label;  ///< the method's id and the parameters that differ between its rows
     std::vector<std::string> fields;    ///< as kTableColumns after the first
     std::vector<std::string> failures;  ///< "status: reason" of the repetitions that are not ok
+    std::vector<std::string> warnings;  ///< why the figures are not to be trusted
 };
 
 /// "method", "fps (range)", ...

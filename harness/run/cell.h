@@ -69,6 +69,7 @@ struct CellResult {
     std::vector<std::string> modules;    ///< of lodbench, that the cell's process loaded
     Counters counters;  ///< of the lockstep replay: means over its frames, of `..._so_far` the last
     std::string depth_hash;  ///< at the randomly chosen frame, lockstep
+    std::string shots_hash;  ///< of the depth images at the frames of the pictures, lockstep
     std::string terrain_name, terrain_checksum;
     std::string plugin_checksum;  ///< of the plugin file: 16 hex digits
     std::optional<double> claimed_px;

@@ -210,6 +210,7 @@ std::string write_result(const CellResult& result) {
         json["counters"].append(pair);
     }
     json["depth_hash"] = result.depth_hash;
+    json["shots_hash"] = result.shots_hash;
     json["terrain_name"] = result.terrain_name;
     json["terrain_checksum"] = result.terrain_checksum;
     json["plugin_checksum"] = result.plugin_checksum;
@@ -259,6 +260,7 @@ CellResult read_result(std::string_view text, const std::string& where) {
                                          pair[1].isNull() ? NAN : pair[1].asDouble());
         }
         result.depth_hash = report::get_string(json, "depth_hash", where);
+        result.shots_hash = report::get_string(json, "shots_hash", where);
         result.terrain_name = report::get_string(json, "terrain_name", where);
         result.terrain_checksum = report::get_string(json, "terrain_checksum", where);
         result.plugin_checksum = report::get_string(json, "plugin_checksum", where);
@@ -339,6 +341,7 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     for (const auto& [name, value] : result.counters) json["counters"][name] = number(value);
     json["claimed_px"] = number(result.claimed_px);
     json["depth_hash"] = text_or_null(result.depth_hash);
+    json["shots_hash"] = text_or_null(result.shots_hash);
     json["terrain"] = text_or_null(result.terrain_name);
     json["terrain_checksum"] = text_or_null(result.terrain_checksum);
     json["plugin_checksum"] = text_or_null(result.plugin_checksum);

@@ -288,6 +288,7 @@ void Flight::fly_in_lockstep() {
         *stage_, measures_truth() ? result_.claimed_px : std::nullopt, truth);
     warm_up();  // as the timing replay began
     std::map<std::string, double> sums;
+    base::Fnv1a shots_hash;
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         begin_frame(frame);
         FrameRecord& record = result_.frames[std::size_t(frame)];
@@ -316,9 +317,14 @@ void Flight::fly_in_lockstep() {
                     spec_.plugin.filename().string(), timing_hash_, result_.depth_hash));
             }
         }
-        if (spec_.repetition == 0 && std::ranges::find(shots_, frame) != shots_.end()) shoot(frame);
+        if (std::ranges::find(shots_, frame) != shots_.end()) {
+            stage_->draw_picture();
+            stage_->add_depth_to(shots_hash);
+            if (spec_.repetition == 0) shoot(frame);
+        }
         stage_->resume_background();
     }
+    result_.shots_hash = shots_hash.hex();
     for (const auto& [name, sum] : sums) {
         result_.counters.emplace_back(name, sum / scenario_.frames);
     }

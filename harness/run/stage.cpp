@@ -272,9 +272,13 @@ std::vector<std::uint8_t> Stage::read_color() {
     return rows;
 }
 
+void Stage::add_depth_to(base::Fnv1a& hash) {
+    for (const float depth : read_depth()) hash.add(std::bit_cast<std::uint32_t>(depth));
+}
+
 std::string Stage::depth_hash() {
     base::Fnv1a hash;
-    for (const float depth : read_depth()) hash.add(std::bit_cast<std::uint32_t>(depth));
+    add_depth_to(hash);
     return hash.hex();
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "api/method.h"
+#include "base/hash.h"
 #include "gl/device.h"
 #include "gl/objects.h"
 #include "measure/capture.h"
@@ -83,7 +84,9 @@ public:
     /// Row 0 is the top of the picture.
     [[nodiscard]] std::vector<float> read_depth();
     [[nodiscard]] std::vector<std::uint8_t> read_color();  ///< RGB
-    /// 16 hex digits over the bits of the depth image.
+    /// The bits of the depth image.
+    void add_depth_to(base::Fnv1a& hash);
+    /// 16 hex digits over them.
     [[nodiscard]] std::string depth_hash();
 
     /// Compare the pipeline state around every call of the method (not in the timing replay).

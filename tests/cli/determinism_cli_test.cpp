@@ -77,5 +77,31 @@ TEST(Determinism, two_runs_give_the_same_truth_to_the_bit_on_all_processors_and_
     }
 }
 
+TEST(Determinism,
+     a_method_that_draws_otherwise_in_each_repetition_is_warned_of_beside_its_figures) {
+    const ScratchFolder folder;
+    const fs::path file = folder.path() / "small.toml";
+    std::ofstream(file) << "name = \"small\"\n[terrain]\nsynthetic = \"plane\"\nrows = 17\n"
+                           "columns = 17\nspacing = 10\n[viewport]\nwidth = 64\nheight = 48\n"
+                           "[flight]\nkind = \"line\"\nframes = 2\nwarmup_frames = 0\n"
+                           "start = [10, 20, 100]\nend = [40, 30, 100]\npitch = -60\n";
+    const fs::path out = folder.path() / "out";
+    const Finished finished = run_lodbench(
+        {"run", file.string(), "--plugin-dir", broken_plugin_folder("draws_by_chance"), "--method",
+         "draws-by-chance", "--method", "full-grid", "--repeat", "3", "--out", out.string()},
+        folder.path());
+    EXPECT_EQ(finished.status, 0) << finished.output;
+    const std::string page = (folder.path() / "report.html").string();
+    const Finished reported = run_lodbench({"report", out.string(), "--out", page}, folder.path());
+    EXPECT_EQ(reported.status, 0) << reported.output;
+    const std::string words = "triangles a frame differ between repetitions: ";
+    for (const std::string& text : {finished.output, text_of(out / "summary.md"), text_of(page)}) {
+        const std::size_t found = text.find(words);
+        ASSERT_NE(found, text.npos) << text.substr(0, 4000);
+        EXPECT_NE(text.rfind("draws-by-chance", found), text.npos);
+        EXPECT_EQ(text.find("full-grid, small: ", 0), text.npos) << "full-grid draws the same";
+    }
+}
+
 }  // namespace
 }  // namespace lodbench::test

@@ -351,12 +351,15 @@ class Report(unittest.TestCase):
         self.assertIn("demo (second)", text)
 
     def test_pictures_are_embedded_up_to_a_budget_and_the_rest_is_named(self):
-        folder = write_folder(self.root / "run", [cell(f"m{i}__r0", method=f"m{i}") for i in range(3)])
+        folder = write_folder(self.root / "run", [cell(f"m{i}__r0", method=f"m{i}") for i in range(4)])
         for i in range(2):
             (folder / "shots" / f"m{i}__r0__worst.png").write_bytes(png(64, 48))
         (folder / "shots" / "m2__r0__worst.png").write_bytes(b"no picture")
         page, text = self.make(folder)
         self.assertEqual(text.count("<img "), 2)
+        self.assertIn("shots/m2__r0__worst.png: damaged, or no PNG", text)
+        self.assertIn("shots/m3__r0__worst.png: there is no such file", text)
+        self.assertNotIn("m1__r0__worst.png", text)
         self.assertNotIn("left out, so that", text)
         for i in range(3):
             (folder / "shots" / f"m{i}__r0__worst.png").write_bytes(png(1800, 1100))

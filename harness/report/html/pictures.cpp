@@ -35,11 +35,14 @@ std::optional<std::string> webp_uri(const Image& image) {
 }  // namespace
 
 std::string PictureBudget::embed(const std::filesystem::path& png) {
+    const auto unusable = [&](const char* why) {
+        unusable_.push_back(
+            fmt::format("{}: {}", (png.parent_path().filename() / png.filename()).string(), why));
+        return std::string();
+    };
     std::error_code absent;
-    if (!std::filesystem::is_regular_file(png, absent) ||
-        std::filesystem::file_size(png, absent) > kLargestFile) {
-        return {};
-    }
+    if (!std::filesystem::is_regular_file(png, absent)) return unusable("there is no such file");
+    if (std::filesystem::file_size(png, absent) > kLargestFile) return unusable("above 64 MiB");
     if (left_ == 0) {  // spent: not even looked at
         ++left_out_;
         return {};
@@ -47,7 +50,7 @@ std::string PictureBudget::embed(const std::filesystem::path& png) {
     const std::string file = read_text(png);
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
     const std::optional<Image> image = read_png(bytes);
-    if (!image) return {};
+    if (!image) return unusable("damaged, or no PNG");
     std::string uri = webp_uri(*image).value_or("");
     if (uri.empty() || uri.size() > file.size() * 4 / 3) uri = data_uri("png", bytes);
     if (uri.size() > left_) {

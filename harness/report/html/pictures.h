@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lodbench::report::html {
 
@@ -13,14 +14,18 @@ public:
     explicit PictureBudget(std::size_t bytes) : left_(bytes) {}
 
     /// A data URI: WebP where its module is there and makes it smaller, else the PNG as it is. ""
-    /// where there is no such file, it is no picture, or it does not fit any more.
+    /// where it does not fit any more, or cannot be shown.
     [[nodiscard]] std::string embed(const std::filesystem::path& png);
 
+    /// How many did not fit.
     [[nodiscard]] std::size_t left_out() const { return left_out_; }
+    /// "FILE: why" of those that cannot be shown, for the page to say.
+    [[nodiscard]] const std::vector<std::string>& unusable() const { return unusable_; }
 
 private:
     std::size_t left_;
     std::size_t left_out_ = 0;
+    std::vector<std::string> unusable_;
 };
 
 }  // namespace lodbench::report::html

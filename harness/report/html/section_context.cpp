@@ -36,6 +36,11 @@ std::vector<std::string> warnings_of(const ResultFolder& folder) {
                                           : fmt::format("{} ({} and {} more)", warning,
                                                         names.front(), names.size() - 1));
     }
+    for (const CellGroup& group : group_cells(folder.cells)) {
+        for (const std::string& text : disagreements_of(group)) {
+            texts.push_back(fmt::format("{}, {}: {}", group.label, group.scenario, text));
+        }
+    }
     return texts;
 }
 
@@ -117,6 +122,10 @@ std::string lead_html(const ReportData& data) {
 
 void add_context(Page& page, const ReportData& data) {
     page.heading(2, "Context", "context");
+    if (const auto& unusable = page.pictures().unusable(); !unusable.empty()) {
+        page.heading(3, "Pictures that cannot be shown", "unusable-pictures");
+        page.list(unusable);
+    }
     for (const ResultFolder& folder : *data.folders) {
         if (data.folders->size() > 1) page.heading(3, folder.name);
         page.raw(machine_html(folder));

@@ -169,7 +169,8 @@ void add_map(Page& page, const ReportData& data, const ResultSet& set) {
     const glm::dvec2 size = (map.high - map.low) * map.scale;
     const glm::dvec2 corner = map.place({flight->low.x, flight->high.y, 0});
     const glm::dvec2 terrain = (flight->high - flight->low) * map.scale;
-    const std::string picture = page.pictures().embed(flight->hillshade);
+    const std::string picture =
+        flight->hillshade.empty() ? "" : page.pictures().embed(flight->hillshade);
     std::string svg = fmt::format(
         "<figure class=\"map\"><svg viewBox=\"-8 -8 {:.0f} {:.0f}\" role=\"img\" aria-label=\"The "
         "flight over the terrain from above\">\n<rect class=\"ground\" width=\"{:.1f}\" "

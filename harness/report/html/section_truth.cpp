@@ -85,6 +85,8 @@ void add_worst_pictures(Page& page, const ResultSet& set) {
     for (const std::size_t i : choose_groups(set, set.groups.size())) {
         const CellGroup& group = set.groups[i];
         for (const Json::Value* cell : group.good) {
+            // Of later repetitions there is none.
+            if (member_of(*cell, "pixel_error_px").isNull()) continue;
             const std::string id = (*cell)["cell"].asString();
             const std::string uri =
                 page.pictures().embed(set.folder->path / "shots" / (id + "__worst.png"));
