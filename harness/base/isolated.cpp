@@ -8,6 +8,7 @@
 
 #include "api/error.h"
 #include "base/child_process.h"
+#include "base/printable.h"
 
 namespace lodbench::base {
 
@@ -25,7 +26,7 @@ std::string answer_of(const std::function<std::string()>& work) {
     } catch (const EnvironmentError& error) {
         return kNoMeans + std::string(error.what());
     } catch (const std::exception& error) {
-        return kThrew + std::string(error.what());
+        return kThrew + bounded(error.what());
     } catch (...) {
         return kThrew + std::string("something that is not a std::exception was thrown");
     }

@@ -61,6 +61,16 @@ std::string printable(std::string_view text) {
     return result + "\"";
 }
 
+std::string bounded(std::string_view text) {
+    if (text.size() <= kLongestText) return std::string(text);
+    std::size_t kept = kLongestText;
+    // Bytes that continue a character: at most three, whatever the text holds.
+    while (kept > kLongestText - 3 && (static_cast<unsigned char>(text[kept]) & 0xC0U) == 0x80U) {
+        --kept;
+    }
+    return fmt::format("{}... ({} bytes left out)", text.substr(0, kept), text.size() - kept);
+}
+
 std::string plain(std::string_view text) {
     std::string result;
     result.reserve(text.size());

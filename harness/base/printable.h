@@ -14,6 +14,14 @@ namespace lodbench::base {
 /// it steers a terminal.
 [[nodiscard]] std::string plain(std::string_view text);
 
+/// The most bytes of an exception's text that go into messages and results: those of a plugin may
+/// be of any length.
+inline constexpr std::size_t kLongestText = 1000;
+
+/// `text`, cut between two characters where it is longer than kLongestText, with the number of
+/// bytes that are left out.
+[[nodiscard]] std::string bounded(std::string_view text);
+
 /// Bytes of the well-formed UTF-8 character that `text` begins with (Unicode standard, table 3-7);
 /// 0 where it begins with none. `text` is not empty.
 [[nodiscard]] std::size_t character_length(std::string_view text);

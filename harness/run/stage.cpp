@@ -8,6 +8,7 @@
 
 #include "api/error.h"
 #include "base/hash.h"
+#include "base/printable.h"
 #include "gl/frame_blocks.h"
 #include "gl/state.h"
 
@@ -65,10 +66,11 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
     try {
         body();
     } catch (const UnsupportedError& error) {
-        throw MethodSkipped(fmt::format("method '{}' cannot run here: {}", info_.id, error.what()));
+        throw MethodSkipped(
+            fmt::format("method '{}' cannot run here: {}", info_.id, base::bounded(error.what())));
     } catch (const std::exception& error) {
-        throw MethodFailure(
-            fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_, error.what()));
+        throw MethodFailure(fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_,
+                                        base::bounded(error.what())));
     } catch (...) {
         throw MethodFailure(
             fmt::format("{} of plugin {} threw something that is not a std::exception",
@@ -84,9 +86,9 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
         errors.emplace_back("glGetError says so, the debug messages do not");
     }
     if (!errors.empty()) {
-        throw MethodFailure(fmt::format("{} of plugin {} raised {} GL error{}, the first: {}",
-                                        name_of(call), plugin_name_, errors.size(),
-                                        errors.size() == 1 ? "" : "s", errors.front()));
+        throw MethodFailure(fmt::format(
+            "{} of plugin {} raised {} GL error{}, the first: {}", name_of(call), plugin_name_,
+            errors.size(), errors.size() == 1 ? "" : "s", base::bounded(errors.front())));
     }
     if (before) {
         const auto differences = before->differences(gl::PipelineState::capture());
