@@ -12,7 +12,8 @@ install(DIRECTORY shaders/common DESTINATION ${include_subdir})  # blocks.glsl i
 
 install(DIRECTORY scenarios DESTINATION ${LODBENCH_DATA_SUBDIR})
 install(DIRECTORY methods/template DESTINATION ${LODBENCH_DATA_SUBDIR})
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(EXPORT lodbench NAMESPACE lodbench:: FILE LodbenchTargets.cmake DESTINATION ${package_subdir})
 configure_package_config_file(cmake/LodbenchConfig.cmake.in

@@ -1,5 +1,5 @@
 #pragma once
-// Statistics of frames and of runs, as measurement.md defines them. Pure functions.
+// Statistics of frames and of runs, as docs/measurement.md defines them. Pure functions.
 //
 // A NaN among the values is a mistake of whoever measured: every function throws ContractError for
 // it. Errors may be +infinity (a sample that nothing covered); times and runs are finite.

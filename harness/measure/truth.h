@@ -1,6 +1,6 @@
 #pragma once
 // The truth about a cell: what the frames of its lockstep replay really showed, frame by frame and
-// pooled over the flight. See the README's table of fields for what each figure means.
+// pooled over the flight. See docs/measurement.md for what each figure means.
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// Results on disk: names and meaning as in the README's table of fields. Files are written whole or
+// Results on disk: names and meaning as in docs/results.md. Files are written whole or
 // not at all.
 
 #include <filesystem>

@@ -32,7 +32,7 @@ struct CampaignOutcome {
     std::vector<std::string> warnings;
     std::uint64_t seed = 1;
     std::string error;  ///< why it ended early (a full disk); "" when it did not
-    /// 0, 3 or 4, as measurement.md says.
+    /// 0, 3 or 4, as docs/manual.md says.
     [[nodiscard]] int exit_status() const;
 };
 

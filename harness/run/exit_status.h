@@ -1,5 +1,5 @@
 #pragma once
-// What the program ends with; the README's table says the same.
+// What the program ends with; docs/manual.md says the same.
 
 namespace lodbench::run {
 

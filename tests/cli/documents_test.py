@@ -1,4 +1,4 @@
-"""What the README and --help say of the commands is the same, and true.
+"""What the pages and --help say of the commands is the same, and true.
 
 usage: documents_test.py SOURCE_DIR LODBENCH_BINARY
 """
@@ -13,7 +13,8 @@ import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1)).resolve()
 BINARY = sys.argv.pop(1)
-README = (SOURCE / "README.md").read_text()
+PAGES = {path: path.read_text() for path in
+         [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *sorted((SOURCE / "docs").glob("*.md"))]}
 
 
 def run(*arguments):
@@ -33,18 +34,22 @@ def commands():
         yield from ([name, word] for word in inner) if inner else ([[name]])
 
 
-def readme_section(title):
-    return re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", README, re.MULTILINE | re.DOTALL).group(1)
+def page(name):
+    return PAGES[SOURCE / name]
 
 
-def readme_code_lines():
-    for block in re.findall(r"^```(?:sh|console)?\n(.*?)^```", README, re.MULTILINE | re.DOTALL):
-        yield from block.splitlines()
+def code_lines():
+    for text in PAGES.values():
+        for block in re.findall(r"^```(?:sh|console)?\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+            yield from block.splitlines()
 
 
 class Documents(unittest.TestCase):
-    def test_readme_lists_the_commands_that_help_lists(self):
-        table = re.findall(r"^\| `lodbench ([a-z -]+?)(?= [^a-z]|`)", readme_section("Commands"),
+    def test_readme_is_read_in_one_go(self):
+        self.assertLessEqual(len(page("README.md").encode()), 8000)
+
+    def test_manual_lists_the_commands_that_help_lists(self):
+        table = re.findall(r"^\| `lodbench ([a-z -]+?)(?= [^a-z]|`)", page("docs/manual.md"),
                            re.MULTILINE)
         self.assertEqual(sorted(table), sorted(" ".join(command) for command in commands()))
 
@@ -60,36 +65,40 @@ class Documents(unittest.TestCase):
             self.assertEqual(status, 2, (words, text))
             self.assertLessEqual(len(text.splitlines()), 3, text)
 
-    def test_readme_uses_options_that_exist(self):
+    def test_pages_use_options_that_exist(self):
         used = 0
-        for line in readme_code_lines():
+        for line in code_lines():
             call = re.match(r"^(?:\S*/)?lodbench ((?:terrain )?[a-z-]+)(.*)", line)
             if not call:
                 continue
             help_text = run(*call.group(1).split(), "--help")[1]
-            for option in re.findall(r"(?<=\s)(--?[a-z][a-z-]*)", call.group(2).split("#")[0]):
+            for option in re.findall(r"(?<=\s)(--?[a-z][a-z-]*)", re.split("#|&&", call.group(2))[0]):
                 used += 1
                 self.assertRegex(help_text, rf"(?<![\w-]){option}(?![\w-])", line)
         self.assertGreater(used, 5)
 
-    def test_readme_names_every_field_of_a_cell(self):
+    def test_results_page_names_every_field_of_a_cell(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out"
             status, text = run("run", "--method", "full-grid", "--frames", "2", "--size", "64x48",
                                "--repeat", "1", "--out", str(out))
             self.assertEqual(status, 0, text)
             cell = json.loads((out / "cells.jsonl").read_text().splitlines()[0])
-            for name in re.findall(r"`([\w./]+)`", readme_section("Results").split("|")[0]):
+            for name in re.findall(r"`([\w./]+)`", page("docs/results.md").split("|")[0]):
                 if "/" not in name.rstrip("/"):
                     self.assertTrue((out / name).exists(), name)
-        rows = re.findall(r"^\| (`[^|]*`) \|", readme_section("Results"), re.MULTILINE)
+        rows = re.findall(r"^\| (`[^|]*`) \|", page("docs/results.md"), re.MULTILINE)
         self.assertEqual(sorted(re.findall(r"`(\w+)`", " ".join(rows))), sorted(cell))
 
-    def test_readme_points_at_files_that_exist(self):
-        for path in re.findall(r"\]\(([^)#:]+)\)", README):
-            self.assertTrue((SOURCE / path).exists(), path)
-        for path in re.findall(r"^\| `([a-z.][\w./]*/)` \|", README, re.MULTILINE):
-            self.assertTrue((SOURCE / path).is_dir(), path)
+    def test_pages_point_at_files_that_exist(self):
+        linked = set()
+        for path, text in PAGES.items():
+            for target in re.findall(r"\]\(([^)#:]+)\)", text):
+                self.assertTrue((path.parent / target).exists(), f"{path}: {target}")
+                linked.add((path.parent / target).resolve())
+            for folder in re.findall(r"^\| `([a-z.][\w./]*/)` \|", text, re.MULTILINE):
+                self.assertTrue((SOURCE / folder).is_dir(), f"{path}: {folder}")
+        self.assertEqual([p for p in PAGES if p.name != "README.md" and p not in linked], [], "pages that none names")
 
     def test_scripts_have_help(self):
         for script in ["demo", "test", "check-clean"]:
