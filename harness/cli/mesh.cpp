@@ -90,7 +90,10 @@ std::string text_of(const ParamValue& value) {
 /// file. Returns what is to be printed.
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
                         const run::MethodInfo& method, const run::Settings& settings) {
-    const std::shared_ptr<const Terrain> terrain = terrain::open_terrain(scenario.terrain);
+    terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(scenario.terrain);
+    for (const std::string& warning : opened.provenance.warnings)
+        base::tell("warning: {}", warning);
+    const std::shared_ptr<const Terrain> terrain = std::move(opened.terrain);
     const auto path =
         scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
     run::VitalSigns signs;

@@ -37,12 +37,12 @@ void add_shape(CLI::App& command, TerrainOptions& options);
 /// What is said of a terrain, of one in a store too.
 struct TerrainText {
     TerrainInfo info = {};
-    std::string kind = {};
-    bool spacing_assumed = false;
+    terrain::Provenance provenance = {};
     std::optional<terrain::StoreSampling> store = {};  ///< empty where it is none
     std::string written = {};                          ///< file; empty where none was written
     double seconds = 0;                                ///< that writing a store took
 };
+/// To standard output; warnings to standard error too, in JSON as well.
 void print(const TerrainText& text, bool json);
 
 /// One command each: `lodbench terrain ...`.

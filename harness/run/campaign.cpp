@@ -312,6 +312,7 @@ private:
         if (!result.gl_renderer.empty()) refuse_other_renderer(gl_context(result));
         const std::string csv = frames_csv(result.frames);
         record["frames_checksum"] = report::checksum_of(csv);
+        for (const std::string& warning : result.terrain_warnings) warn_once(warning);
         folder_.add_cell(cell.spec.id, record, csv);
         finished_.insert(cell.spec.id);
         outcome_.cells.push_back(record);
@@ -320,6 +321,15 @@ private:
             write_run();
         }
         observer_.cell_finished(cell, index, plan_.cells.size(), record);
+    }
+
+    /// What every cell over a terrain says of it stands in run.json.
+    void warn_once(const std::string& warning) {
+        if (std::ranges::count(outcome_.warnings, warning) > 0) return;
+        outcome_.warnings.push_back(warning);
+        run_["warnings"].append(warning);
+        write_run();
+        observer_.warned(warning);
     }
 
     void write_run() {

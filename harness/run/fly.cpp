@@ -164,7 +164,9 @@ private:
 
 void Flight::open() {
     signs_.enter(Call::load_terrain);
-    terrain_ = terrain::open_terrain(scenario_.terrain);
+    terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(scenario_.terrain);
+    terrain_ = std::move(opened.terrain);
+    result_.terrain_warnings = std::move(opened.provenance.warnings);
     const bool stored = std::dynamic_pointer_cast<const terrain::HeightField>(terrain_) == nullptr;
     methods_terrain_ = stored ? terrain::open_terrain(scenario_.terrain) : terrain_;
     // Known before an hour's flight, not after.
