@@ -58,6 +58,23 @@ void SampleCensus::extend(double sample, int row, int column) {
     if (sample > highest_.sample) highest_ = {sample, row, column};
 }
 
+void ByteOrderCensus::add(std::uint16_t sample, bool first) {
+    const auto swapped = std::uint16_t(sample >> 8U | sample << 8U);
+    low_bytes_ |= sample & 0xFFU;
+    if (!first) {
+        as_read_ += step(before_, sample);
+        as_swapped_ += step(std::uint16_t(before_ >> 8U | before_ << 8U), swapped);
+    }
+    before_ = sample;
+}
+
+bool ByteOrderCensus::look_swapped() const {
+    // Of a smooth surface the ratio is tens or hundreds; of noise, 1. Samples of 8 bits moved up by
+    // 8 would be smoother swapped too, and are right.
+    constexpr double kFar = 8;
+    return low_bytes_ != 0 && as_read_ > kFar * as_swapped_;
+}
+
 std::vector<SampleCensus::Mark> SampleCensus::marks() const {
     std::vector<Mark> found;
     const double range = std::max(highest_.sample - lowest_.sample, 0.0);
@@ -91,6 +108,8 @@ HeightRule::HeightRule(const TerrainSource& source, const Sidecar& sidecar,
             fmt::format("{}: vertical scale {}, offset {}; both must be finite, the scale not 0",
                         file_, scale_, offset_));
     }
+    two_bytes_ =
+        description.integers && description.integers->second - description.integers->first == 65535;
     if (!no_data_) return;
     if (!description.integers) {
         tolerance_ = tolerance_of(*no_data_);
@@ -108,7 +127,8 @@ bool HeightRule::is_void(double sample) const {
     if (!no_data_) return false;
     if (sample == *no_data_ || std::abs(sample - *no_data_) <= tolerance_) return true;
     // -1.7976931348623157e308 in a file of float32: the samples are as far as these go.
-    return tolerance_ > kFloatMax && std::abs(sample) >= (1 - kSixDigits) * kFloatMax &&
+    const bool beyond_float = tolerance_ > kFloatMax || std::isinf(*no_data_);
+    return beyond_float && std::abs(sample) >= (1 - kSixDigits) * kFloatMax &&
            std::signbit(sample) == std::signbit(*no_data_);
 }
 
@@ -140,6 +160,8 @@ int HeightRule::apply(int row, std::span<const double> samples, std::span<float>
         heights[i] = float(height);
         if (!unheld_.empty() && sample == wrapped_) ++wrapped_count_;
         census_.add(sample, row, int(i));
+        if (two_bytes_)
+            bytes_.add(std::uint16_t(std::int32_t(sample)), i == 0 || std::isnan(heights[i - 1]));
     }
     return voids;
 }
@@ -158,6 +180,13 @@ std::vector<std::string> HeightRule::warnings() const {
             "no-data, or say in the file that its samples are signed",
             file_, unheld_, wrapped_count_, wrapped_));
     }
+    if (bytes_.look_swapped()) {
+        texts.push_back(
+            fmt::format("{}: neighbouring samples differ far less with the two bytes of each the "
+                        "other way round: "
+                        "check the order of bytes",
+                        file_));
+    }
     for (const SampleCensus::Mark& mark : census_.marks()) {
         texts.push_back(fmt::format(
             "{}: {} samples are {}, the first at row {}, column {}, far from all others: taken for "
@@ -168,7 +197,8 @@ std::vector<std::string> HeightRule::warnings() const {
     const SampleCensus::Place& highest = scale_ > 0 ? census_.highest() : census_.lowest();
     for (const auto& [place, what] : {std::pair{&lowest, "deeper"}, {&highest, "higher"}}) {
         const double height = place->sample * scale_ + offset_;
-        if (place->row < 0 || (height >= kLowestOnEarth && height <= kHighestOnEarth)) continue;
+        const bool beyond = place == &lowest ? height < kLowestOnEarth : height > kHighestOnEarth;
+        if (place->row < 0 || !beyond) continue;
         texts.push_back(fmt::format(
             "{}: the height at row {}, column {} is {} m, {} than any on the Earth; check unit, "
             "vertical scale, no-data and order of bytes",

@@ -1,7 +1,9 @@
 #pragma once
 // From the numbers of a raster to heights in metres, and what these numbers make one suspect.
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <span>
@@ -54,6 +56,26 @@ private:
     std::vector<Mark> marks_;
 };
 
+/// Whether samples of 16 bits were written with their bytes the other way round: terrain is smooth,
+/// and with its bytes swapped it is not.
+class ByteOrderCensus {
+public:
+    /// The bits of a sample; `first` where the one before it is not its neighbour.
+    void add(std::uint16_t sample, bool first);
+    [[nodiscard]] bool look_swapped() const;
+
+private:
+    /// As signed and as unsigned numbers, whichever is less: a step across sea level is small.
+    static double step(std::uint16_t one, std::uint16_t other) {
+        const int difference = std::abs(int(one) - int(other));
+        return std::min(difference, 65536 - difference);
+    }
+    std::uint16_t before_ = 0;
+    unsigned low_bytes_ = 0;  ///< every bit that one of them has
+    double as_read_ = 0;      ///< sum of the differences of neighbours
+    double as_swapped_ = 0;
+};
+
 /// height = sample * scale + offset; voids become NaN.
 class HeightRule {
 public:
@@ -85,6 +107,8 @@ private:
     double wrapped_ = 0;  ///< what the no-data value becomes in the file's bits, where unheld_
     std::uint64_t wrapped_count_ = 0;
     SampleCensus census_;
+    bool two_bytes_ = false;
+    ByteOrderCensus bytes_;
 };
 
 }  // namespace lodbench::terrain

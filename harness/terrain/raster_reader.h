@@ -61,9 +61,9 @@ protected:
 /// and the origin is longitude and latitude of the south-west sample times these. Projected
 /// coordinates are multiplied by the length of their unit. A sample stands at the centre of its
 /// pixel. Where a map's metre at the raster's centre is off from the ground's by more than a
-/// hundredth, as in Web Mercator, spacing and origin are those of the ground, with a warning.
-/// Rotated geotransforms are refused, south-up rasters flipped. GDAL is loaded at the first call.
-/// Throws InputError.
+/// twentieth, as in Web Mercator, spacing and origin are those of the ground, with a warning; by
+/// more than a hundredth, there is the warning alone. Rotated geotransforms are refused, south-up
+/// rasters flipped. GDAL is loaded at the first call. Throws InputError.
 [[nodiscard]] std::unique_ptr<RasterReader> open_with_gdal(const std::filesystem::path& file);
 
 /// Images of one channel, or of one and alpha. OpenImageIO is loaded at the first call. Throws

@@ -9,6 +9,7 @@
 #include "terrain/ascii_grid_check.h"
 #include "terrain/colour_heights.h"
 #include "terrain/readers/gdal_place.h"
+#include "terrain/world_file.h"
 
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
@@ -46,39 +47,27 @@ constexpr std::array<const char*, 8> kDrivers = {"GTiff", "AAIGrid", "SRTMHGT", 
 
 /// Metres in one vertical unit; nothing where the unit is unknown.
 std::optional<double> metres_per_unit(const std::string& unit) {
-    static constexpr std::array<std::pair<const char*, double>, 29> kUnits = {{
-        {"", 1},
-        {"m", 1},
-        {"metre", 1},
-        {"metres", 1},
-        {"meter", 1},
-        {"meters", 1},
-        {"ft", 0.3048},
-        {"foot", 0.3048},
-        {"feet", 0.3048},
-        {"us survey foot", 1200.0 / 3937.0},
-        {"us survey feet", 1200.0 / 3937.0},
-        {"ftus", 1200.0 / 3937.0},
-        {"us-ft", 1200.0 / 3937.0},
-        {"foot_us", 1200.0 / 3937.0},
-        {"ft_us", 1200.0 / 3937.0},
-        {"us_survey_foot", 1200.0 / 3937.0},
-        {"survey_feet", 1200.0 / 3937.0},
-        {"survey_foot", 1200.0 / 3937.0},
-        {"international foot", 0.3048},
-        {"international_feet", 0.3048},
-        {"mm", 0.001},
-        {"millimetre", 0.001},
-        {"cm", 0.01},
-        {"centimetre", 0.01},
-        {"dm", 0.1},
-        {"decimetre", 0.1},
-        {"decimeters", 0.1},
-        {"km", 1000},
-        {"kilometre", 1000},
+    struct Unit {
+        double metres;
+        std::vector<const char*> names;
+    };
+    static const std::array<Unit, 7> kUnits = {{
+        {1, {"", "m", "metre", "metres", "meter", "meters"}},
+        {0.3048,
+         {"ft", "foot", "feet", "international foot", "international feet", "international_feet",
+          "foot (international)"}},
+        {1200.0 / 3937.0,
+         {"us survey foot", "us survey feet", "u.s. survey foot", "us_survey_foot", "survey foot",
+          "survey feet", "survey_foot", "survey_feet", "foot_us", "ft_us", "ftus", "us-ft"}},
+        {0.1, {"dm", "decimetre", "decimetres", "decimeter", "decimeters"}},
+        {0.01, {"cm", "centimetre", "centimetres", "centimeter", "centimeters"}},
+        {0.001, {"mm", "millimetre", "millimetres", "millimeter", "millimeters"}},
+        {1000, {"km", "kilometre", "kilometres", "kilometer", "kilometers"}},
     }};
-    for (const auto& [name, metres] : kUnits) {
-        if (EQUAL(unit.c_str(), name)) return metres;
+    for (const auto& [metres, names] : kUnits) {
+        for (const char* name : names) {
+            if (EQUAL(unit.c_str(), name)) return metres;
+        }
     }
     return std::nullopt;
 }
@@ -143,8 +132,7 @@ private:
                                          kDrivers.data(),
                                          grid.fractional ? as_doubles.data() : nullptr));
         if (!dataset_) {
-            refuse(fmt::format("is no elevation model that can be read; {}",
-                               named(".hgt") ? why_no_tile() : said(words)));
+            refuse(fmt::format("is no elevation model that can be read; {}", why_not(words)));
         }
         if (grid.recognised && (dataset_->GetRasterYSize() != grid.rows ||
                                 dataset_->GetRasterXSize() != grid.columns)) {
@@ -152,6 +140,15 @@ private:
                                grid.rows, grid.columns, dataset_->GetRasterYSize(),
                                dataset_->GetRasterXSize()));
         }
+    }
+
+    [[nodiscard]] std::string why_not(const GdalWords& words) const {
+        if (named(".hgt")) return why_no_tile();
+        if ((named(".bil") || named(".flt")) && !find_beside(file_, ".hdr")) {
+            return fmt::format("its header {} does not lie beside it",
+                               file_.filename().replace_extension(".hdr").string());
+        }
+        return said(words);
     }
 
     /// SRTM tiles have no header: GDAL knows them by their sizes and their names.

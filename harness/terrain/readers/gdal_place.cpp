@@ -42,9 +42,15 @@ std::string GdalWords::last() const {
 
 namespace {
 
-/// A map whose metre at the raster's centre is off from the ground's by more than this is taken to
-/// the ground. Maps made for surveys (UTM: 0.04 %, state planes: 0.01 %) stay as they are.
+/// How far a metre of the map may be off from the ground's at the raster's centre. Maps made for
+/// surveys (UTM: 0.04 %, state planes: 0.01 %) are faithful; what is off by more is told, and by
+/// much more, as Web Mercator is, taken to the ground.
 constexpr double kFaithful = 0.01;
+constexpr double kTolerable = 0.05;
+
+double off_by(glm::dvec2 ratio) {
+    return std::max(std::abs(ratio.x - 1), std::abs(ratio.y - 1));
+}
 
 /// Metres per radian of longitude (x) and latitude (y) at a latitude; see open_with_gdal.
 glm::dvec2 metres_per_radian(double latitude, const OGRSpatialReference& reference) {
@@ -192,20 +198,20 @@ void Place::in_map_units(const OGRSpatialReference& reference) {
         metres == 1 ? "metres"
                     : fmt::format("{} ({:.10g} m)", unit == nullptr ? "units" : unit, metres);
     description_.reference = fmt::format("{}; {}", name_of(reference), units);
-    glm::dvec2 ground = ground_per_unit(reference);
+    const glm::dvec2 ground = ground_per_unit(reference);
     const glm::dvec2 ratio = ground / metres;
-    const bool faithful = std::abs(ratio.x - 1) <= kFaithful && std::abs(ratio.y - 1) <= kFaithful;
-    if (faithful) ground = glm::dvec2(metres);
-    set(ground);
-    if (faithful) return;
-    description_.reference +=
-        fmt::format(", taken to the ground's by {:.6g} east, {:.6g} north", ratio.x, ratio.y);
+    const bool scaled = off_by(ratio) > kTolerable;
+    set(scaled ? ground : glm::dvec2(metres));
+    if (off_by(ratio) <= kFaithful) return;
+    if (scaled) {
+        description_.reference +=
+            fmt::format(", taken to the ground's by {:.6g} east, {:.6g} north", ratio.x, ratio.y);
+    }
     description_.warnings.push_back(fmt::format(
-        "{}: a metre of the map is {:.4g} m on the ground east and {:.4g} m north at the centre, "
-        "so "
-        "spacing and origin were scaled by that; gdalwarp to a projection that keeps true lengths "
-        "there (UTM) for more",
-        name_of(reference), ratio.x, ratio.y));
+        "{}: a metre of the map is {:.4g} m on the ground east and {:.4g} m north at the centre{}; "
+        "gdalwarp to a projection that keeps true lengths there (UTM) for more",
+        name_of(reference), ratio.x, ratio.y,
+        scaled ? ", so spacing and origin were scaled by that" : ", and spacing is the map's"));
 }
 
 /// Metres on the ground for a unit of the map, east and north at the raster's centre; those of the
@@ -241,7 +247,7 @@ glm::dvec2 Place::ground_per_unit(const OGRSpatialReference& reference) const {
 void Place::read_vertical(const OGRSpatialReference& reference) {
     const double metres = reference.IsGeographic() != 0 ? 1 : reference.GetLinearUnits(nullptr);
     if (reference.IsCompound() == 0) {
-        if (!description_.vertical_unit_named && metres != 1) {
+        if (!description_.vertical_unit_named && metres < 1) {
             description_.warnings.push_back(
                 fmt::format("its map units are {:.10g} m long and the unit of its heights is not "
                             "named: taken for "
@@ -253,7 +259,8 @@ void Place::read_vertical(const OGRSpatialReference& reference) {
     OGRAxisOrientation orientation = OAO_Up;
     reference.GetAxis("COMPD_CS|VERT_CS", 0, &orientation);
     if (orientation == OAO_Down) {
-        description_.unit_hint = "its heights count downwards, as depths";
+        description_.unit_hint =
+            "its heights count downwards, as depths, which a negative scale turns";
         return;
     }
     const double unit = reference.GetTargetLinearUnits("VERT_CS", nullptr);
