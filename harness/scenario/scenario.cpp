@@ -161,7 +161,7 @@ void read_measure_and_run(Section& top, Scenario& scenario) {
             auto given = measure->integers(key, 0, scenario.frames - 1);
             if (!given) return;
             std::ranges::sort(*given);
-            given->erase(std::ranges::unique(*given).begin(), given->end());
+            given->erase(std::unique(given->begin(), given->end()), given->end());
             list = std::move(*given);
         };
         frames("shots", scenario.measure.shots);
@@ -250,7 +250,7 @@ void move_frames(std::vector<int>& frames, int from, int to) {
     for (int& frame : frames) {
         frame = from == 1 ? 0 : int(std::lround(double(frame) * (to - 1) / (from - 1)));
     }
-    frames.erase(std::ranges::unique(frames).begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
 }
 
 }  // namespace
