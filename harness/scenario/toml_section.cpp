@@ -71,6 +71,15 @@ std::string key_name(std::string_view key) {
 }  // namespace
 
 std::string describe(const toml::node& node) {
+    constexpr std::size_t kMaxEntries = 4;  // of an array that are shown
+    if (const auto* array = node.as_array()) {
+        std::string text;
+        for (std::size_t i = 0; i < array->size() && i < kMaxEntries; ++i) {
+            const toml::node& entry = *array->get(i);
+            text += (i > 0 ? ", " : "") + (entry.is_array() ? "[...]" : describe(entry));
+        }
+        return fmt::format("[{}{}]", text, array->size() > kMaxEntries ? ", ..." : "");
+    }
     if (const auto* text = node.as_string()) return base::printable(text->get());
     if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
     if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());

@@ -137,9 +137,8 @@ TEST(NastyToml, control_characters_and_long_names_come_back_escaped_and_cut) {
         "[terrain]\nsynthetic = \"plane\"\n[flight]\nkind = \"orbit\"\n"
         "centre = [0, 0]\nradius = 9\n[[method]]\nid = \"some\"\n";
     EXPECT_THAT(refusal(valid + "\"\\u001b[31m\" = []\n"),
-                HasSubstr(":9: [[method]] \"\\x1b[31m\" = an array: 0 values"));
-    EXPECT_THAT(refusal(valid + std::string(4000, 'k') + " = []\n"),
-                HasSubstr("kkk...\" = an array"));
+                HasSubstr(":9: [[method]] \"\\x1b[31m\" = []: 0 values"));
+    EXPECT_THAT(refusal(valid + std::string(4000, 'k') + " = []\n"), HasSubstr("kkk...\" = []"));
     // C1 too steers a terminal.
     EXPECT_THAT(refusal("[terrain]\nfile = \"a\\u009b31m\"\n"), HasSubstr("control characters"));
 }
