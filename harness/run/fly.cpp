@@ -88,8 +88,9 @@ public:
         measurer_->write_picture(shot_path("worst"), spec_.id);
         measurer_.reset();
         stage_->release();
-        record_flight(spec_.out, scenario_.name, *terrain_, scenario_.frames,
-                      [this](int frame) { return camera_at(frame); });
+        result_.flight_warnings =
+            record_flight(spec_.out, scenario_.name, *terrain_, scenario_.frames,
+                          [this](int frame) { return camera_at(frame); });
     }
 
     [[nodiscard]] std::string where() const {
