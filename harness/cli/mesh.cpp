@@ -13,6 +13,7 @@
 #include "base/isolated.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/terrain_options.h"
 #include "report/results.h"
 #include "run/exit_status.h"
 #include "run/locations.h"
@@ -91,8 +92,7 @@ std::string text_of(const ParamValue& value) {
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
                         const run::MethodInfo& method, const run::Settings& settings) {
     terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(scenario.terrain);
-    for (const std::string& warning : opened.provenance.warnings)
-        base::tell("warning: {}", warning);
+    tell_warnings(opened.terrain->info(), opened.provenance);
     const std::shared_ptr<const Terrain> terrain = std::move(opened.terrain);
     const auto path =
         scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);

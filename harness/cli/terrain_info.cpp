@@ -41,7 +41,7 @@ Json::Value json_of(const TerrainText& text) {
     object["extent_max_m"] = pair(info.extent_max());
     object["voids_filled"] = Json::UInt64(info.void_count);
     object["warnings"] = Json::arrayValue;
-    for (const std::string& warning : text.provenance.warnings) {
+    for (const std::string& warning : warnings_of(info, text.provenance)) {
         object["warnings"].append(warning);
     }
     object["checksum"] = info.checksum;
@@ -88,8 +88,28 @@ void run(const TerrainOptions& options, const CLI::App& command) {
 
 }  // namespace
 
+std::vector<std::string> warnings_of(const TerrainInfo& info,
+                                     const terrain::Provenance& provenance) {
+    std::vector<std::string> warnings = provenance.warnings;
+    constexpr double kManyVoids = 0.01;
+    const double share = double(info.void_count) / (double(info.rows) * info.columns);
+    if (share >= kManyVoids) {
+        warnings.push_back(fmt::format(
+            "terrain '{}': {:.3g} % of its samples ({}) had no data and were filled from their "
+            "neighbours: what is measured there is no terrain",
+            info.name, 100 * share, info.void_count));
+    }
+    return warnings;
+}
+
+void tell_warnings(const TerrainInfo& info, const terrain::Provenance& provenance) {
+    for (const std::string& warning : warnings_of(info, provenance)) {
+        base::tell("warning: {}", warning);
+    }
+}
+
 void print(const TerrainText& text, bool json) {
-    for (const std::string& warning : text.provenance.warnings) base::tell("warning: {}", warning);
+    tell_warnings(text.info, text.provenance);
     if (json) {
         base::print("{}\n", report::to_text(json_of(text), true));
         return;

@@ -22,9 +22,6 @@ LoadedTerrain load_raster(const TerrainSource& source) {
     const std::uint64_t voids = fill_voids(raster.heights, info.rows, info.columns, info.spacing);
     if (voids == raster.heights.size()) throw InputError(raster.all_void);
     info.void_count += voids;
-    if (std::string text = void_warning(info); !text.empty()) {
-        raster.provenance.warnings.push_back(std::move(text));
-    }
     return {std::make_unique<HeightField>(info, std::move(raster.heights)),
             std::move(raster.provenance)};
 }

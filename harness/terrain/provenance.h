@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "api/terrain.h"
-
 namespace lodbench::terrain {
 
 struct Provenance {
@@ -17,8 +15,5 @@ struct Provenance {
     /// What was read and may not be what was meant, each in one line that begins with the file.
     std::vector<std::string> warnings = {};
 };
-
-/// What to say where a tenth of the samples or more had no data and were filled; else empty.
-[[nodiscard]] std::string void_warning(const TerrainInfo& info);
 
 }  // namespace lodbench::terrain

@@ -22,13 +22,7 @@ struct VoidMet {
 class FileRows final : public TerrainRows {
 public:
     explicit FileRows(const TerrainSource& source) : rows_(source) { info_ = rows_.info(); }
-    [[nodiscard]] Provenance provenance() const override {
-        Provenance provenance = rows_.provenance();
-        if (std::string text = void_warning(info_); !text.empty()) {
-            provenance.warnings.push_back(std::move(text));
-        }
-        return provenance;
-    }
+    [[nodiscard]] Provenance provenance() const override { return rows_.provenance(); }
     void next(std::span<float> heights) override {
         if (rows_.next(heights) > 0) throw VoidMet{row_};
         ++row_;

@@ -225,11 +225,7 @@ void StoredTerrain::copy_samples(const SampleRect& rect, std::span<float> height
 }
 
 Provenance provenance_of(const StoredTerrain& store) {
-    Provenance provenance{.kind = fmt::format("tiled store, {}", store.sampling().text())};
-    if (std::string text = void_warning(store.info()); !text.empty()) {
-        provenance.warnings.push_back(std::move(text));
-    }
-    return provenance;
+    return {.kind = fmt::format("tiled store, {}", store.sampling().text())};
 }
 
 }  // namespace lodbench::terrain

@@ -57,8 +57,7 @@ private:
     mutable std::list<std::pair<TileId, Tile>> cache_;  ///< used last first
 };
 
-/// What a store says of itself. It does not keep what was said of the file it was made of, but for
-/// the number of samples that were filled.
+/// What a store says of itself. It does not keep what was said of the file it was made of.
 [[nodiscard]] Provenance provenance_of(const StoredTerrain& store);
 
 }  // namespace lodbench::terrain

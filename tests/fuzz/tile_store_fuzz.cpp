@@ -1,25 +1,18 @@
 // A libFuzzer target (clang, -DLODBENCH_FUZZ=ON): tile_store_fuzz [--seeds FOLDER | libFuzzer's own
 // arguments]. `--seeds` writes what to begin from and ends.
 
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-
 #include "fuzz/tile_store_fuzz.h"
 
+#include "fuzz/seeds.h"
+
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-    if (*argc == 3 && std::strcmp((*argv)[1], "--seeds") == 0) {
-        const std::filesystem::path folder = (*argv)[2];
-        std::filesystem::create_directories(folder);
-        int number = 0;
+    lodbench::test::write_seeds_if_asked(*argc, *argv, [] {
+        std::vector<std::string> seeds;
         for (const std::string& store : lodbench::test::seed_stores()) {
-            for (const char mode : {'\0', '\1', '\3'}) {
-                std::ofstream(folder / ("seed" + std::to_string(number++)), std::ios::binary)
-                    << mode << store;
-            }
+            for (const char mode : {'\0', '\1', '\3'}) seeds.push_back(mode + store);
         }
-        std::exit(0);
-    }
+        return seeds;
+    });
     return 0;
 }
 

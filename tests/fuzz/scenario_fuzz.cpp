@@ -1,0 +1,161 @@
+// A libFuzzer target (clang, -DLODBENCH_FUZZ=ON): scenario_fuzz [--seeds FOLDER | libFuzzer's own
+// arguments]. Any bytes as a scenario: refused as InputError in one plain line that begins with the
+// file, or a scenario of finite numbers within their documented ranges whose path, where one can be
+// made, gives finite cameras.
+
+#include <unistd.h>
+
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <initializer_list>
+
+#include "api/error.h"
+#include "fake_terrain.h"
+#include "fuzz/refusal.h"
+#include "fuzz/seeds.h"
+#include "scenario/scenario.h"
+
+namespace lodbench::test {
+namespace {
+
+/// A folder with what scenarios may name; it stays as long as the process.
+const std::filesystem::path& folder() {
+    static const std::filesystem::path path = [] {
+        const auto made =
+            std::filesystem::temp_directory_path() / ("scenario_fuzz_" + std::to_string(getpid()));
+        std::filesystem::create_directories(made);
+        std::ofstream(made / "f.csv") << "frame,x,y,z,heading,pitch,roll\n"
+                                         "0,0,0,100,0,-30,0\n1,10,0,100,0,-30,0\n";
+        std::ofstream(made / "t.tif") << "never opened by the parser";
+        return made;
+    }();
+    return path;
+}
+
+void require(bool holds, const char* what) {
+    if (!holds) finding(std::string("accepted, but not ") + what);
+}
+
+void require_finite(std::initializer_list<double> numbers, const char* what) {
+    for (const double number : numbers) require(std::isfinite(number), what);
+}
+
+void check_path_spec(const scenario::PathSpec& path) {
+    for (const scenario::Keyframe& key : path.keyframes) {
+        require_finite({key.position.x, key.position.y, key.position.z, key.heading.value_or(0),
+                        key.pitch, key.roll},
+                       "finite keyframes");
+    }
+    require_finite({path.speed, path.centre.x, path.centre.y, path.centre.z, path.radius,
+                    path.height, path.turns, path.bearing, path.smoothing, path.margin.value_or(0)},
+                   "a finite path");
+}
+
+void check_numbers(const scenario::Scenario& scenario) {
+    const terrain::TerrainSource& terrain = scenario.terrain;
+    require_finite(
+        {terrain.no_data.value_or(0), terrain.spacing_x.value_or(1), terrain.spacing_y.value_or(1),
+         terrain.vertical_scale.value_or(1), terrain.vertical_offset.value_or(0),
+         terrain.origin_x.value_or(0), terrain.origin_y.value_or(0)},
+        "a finite terrain");
+    for (const auto& [name, value] : terrain.shape) require_finite({value}, "a finite shape");
+    require(terrain.rows >= 2 && terrain.columns >= 2, "a terrain of 2 samples a side");
+    require(!scenario.name.empty() && scenario.name.size() <= 64, "a short name");
+    require(scenario.viewport.width >= 1 && scenario.viewport.height >= 1, "a viewport");
+    require(scenario.vertical_fov > 0 && scenario.vertical_fov < 3.1415926, "a field of view");
+    require(scenario.near_plane > 0 && std::isfinite(scenario.near_plane), "a near plane");
+    require(scenario.rate_hz > 0 && std::isfinite(scenario.rate_hz), "a rate");
+    require(scenario.frames >= 1 && scenario.warmup_frames >= 0, "frames");
+    require(scenario.repetitions >= 1 && scenario.measure.every >= 1, "counts of at least 1");
+    require_finite(
+        {scenario.cell_time_limit_s, scenario.frame_time_limit_s, scenario.measure.budget_ms},
+        "finite limits");
+    for (const auto* frames : {&scenario.measure.shots, &scenario.measure.economy}) {
+        for (const int frame : *frames) require(frame >= 0 && frame < scenario.frames, "a frame");
+    }
+    for (const scenario::MethodRequest& method : scenario.methods) {
+        require(!method.id.empty(), "a method's id");
+        for (const auto& [key, values] : method.settings) require(!values.empty(), "a setting");
+    }
+    check_path_spec(scenario.path);
+}
+
+/// First, second, middle and last camera.
+void check_flight(const scenario::Scenario& scenario) {
+    FakeTerrain terrain(5, 9);
+    terrain.height = [](int row, int column) { return float(100 * row - 30 * column); };
+    const auto path =
+        scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, terrain);
+    for (const int frame :
+         {0, std::min(1, scenario.frames - 1), scenario.frames / 2, scenario.frames - 1}) {
+        Camera camera;
+        path->place(frame, camera);
+        const glm::dvec3& eye = camera.position;
+        require_finite({eye.x, eye.y, eye.z}, "a finite camera");
+        require(std::abs(glm::length(camera.orientation) - 1) < 1e-9, "an orientation");
+    }
+}
+
+void use_as_scenario(std::string_view text) {
+    const std::filesystem::path file = folder() / "fuzz.toml";
+    try {
+        scenario::Scenario scenario = scenario::parse_scenario(text, file);
+        check_numbers(scenario);
+        scenario::apply({}, scenario);
+        check_flight(scenario);
+    } catch (const InputError& error) {
+        check_refusal(error.what(), file.string());
+    }
+}
+
+std::vector<std::string> seeds() {
+    const std::string terrain =
+        "[terrain]\nsynthetic = \"ridged\"\nrows = 65\ncolumns = 33\nseed = 3\n"
+        "spacing = [10, 20.5]\nvertical_scale = 2\nvertical_offset = -1.5\n"
+        "origin = [1e3, -2e3]\n[terrain.shape]\nheight = 600\nbase = -10\n";
+    const std::string rest =
+        "[camera]\nvertical_fov = 45\nnear = 0.5\n[viewport]\nwidth = 320\nheight = 200\n"
+        "[measure]\nevery = 5\ntruth = false\nshots = [0, 9]\neconomy = [3]\nbudget_ms = 33\n"
+        "[run]\nrepetitions = 2\nseed = 7\ncell_time_limit_s = 60\nframe_time_limit_s = 5\n"
+        "memory_limit_mib = 512\n[[method]]\nid = \"lindstrom\"\ntau = [0.25, 1, 4]\n"
+        "[[method]]\nid = \"pgm\"\nflag = true\ntext = \"some\"\n";
+    std::vector<std::string> seeds;
+    for (const char* flight :
+         {"kind = \"line\"\nrelative = true\nstart = [0.1, 0.5, 900]\nend = [0.9, 0.5, 300]\n"
+          "pitch = -30\nroll = 5\nframes = 10\nrate_hz = 30\nwarmup_frames = 1\n",
+          "kind = \"line\"\nstart = [0, 0, 900]\nheading = 90\nspeed = 250\nabove_ground = "
+          "true\nframes = 10\n",
+          "kind = \"spline\"\nframes = 10\n[[flight.keyframe]]\nposition = [0, 0, 50]\nheading = "
+          "350\n"
+          "[[flight.keyframe]]\nposition = [9, 9, 60]\nheading = 10\n"
+          "[[flight.keyframe]]\nposition = [90, 9, 60]\nheading = 20\n",
+          "kind = \"orbit\"\nrelative = true\ncentre = [0.5, 0.5, 10]\nradius = 3000\nheight = "
+          "900\nturns = -2\n"
+          "bearing = 90\nframes = 10\n",
+          "kind = \"terrain-following\"\nstart = [0, 0]\nend = [90, 0]\nheight = 50\nsmoothing = "
+          "9\nmargin = 20\n"
+          "frames = 10\n",
+          "kind = \"terrain-following\"\nheight = 50\nframes = 10\nspeed = 3\n[[flight.keyframe]]\n"
+          "position = [0, 0]\n[[flight.keyframe]]\nposition = [9, 9]\n",
+          "kind = \"recorded\"\nfile = \"f.csv\"\nframes = 2\n"}) {
+        seeds.push_back("name = \"some_name-1\"\n" + terrain + "[flight]\n" + flight + rest);
+    }
+    seeds.push_back(
+        "[terrain]\nfile = \"t.tif\"\nno_data = -9999\ncold = true\nout_of_core = true\nspacing = "
+        "30\n"
+        "[flight]\nkind = \"recorded\"\nfile = \"f.csv\"\n");
+    return seeds;
+}
+
+}  // namespace
+}  // namespace lodbench::test
+
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+    lodbench::test::write_seeds_if_asked(*argc, *argv, lodbench::test::seeds);
+    return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    lodbench::test::use_as_scenario({reinterpret_cast<const char*>(data), size});
+    return 0;
+}
