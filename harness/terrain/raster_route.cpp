@@ -98,6 +98,30 @@ bool says_more_beside(const std::filesystem::path& file) {
     return find_world_file(file).has_value();
 }
 
+/// What lies under a raster's name where fetching it went wrong, by its first bytes.
+void refuse_other_content(const std::filesystem::path& file) {
+    struct Content {
+        std::string_view begin;
+        const char* words;
+    };
+    static constexpr std::array kContents = {
+        Content{"version https://git-lfs",
+                "a pointer of Git LFS, not the raster itself; fetch that with `git lfs pull`"},
+        Content{"<!doctype html", "a web page, not a raster; fetch it anew and look at the page"},
+        Content{"<html", "a web page, not a raster; fetch it anew and look at the page"},
+        Content{"\x1f\x8b", "compressed by gzip; unpack it first"},
+        Content{"pk\x03\x04", "a zip archive; unpack it first"},
+    };
+    std::string begin(32, '\0');
+    std::ifstream(file, std::ios::binary).read(begin.data(), std::streamsize(begin.size()));
+    std::ranges::transform(begin, begin.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    for (const Content& content : kContents) {
+        if (!begin.starts_with(content.begin)) continue;
+        throw InputError(fmt::format("{}: is {}", file.string(), content.words));
+    }
+}
+
 bool one_of(std::string_view extension, std::initializer_list<std::string_view> known) {
     return std::find(known.begin(), known.end(), extension) != known.end();
 }
@@ -119,6 +143,8 @@ RasterRoute raster_route(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return char(std::tolower(c)); });
+    // Raw heights may begin with any bytes.
+    if (!one_of(extension, {".raw", ".r16", ".bin", ".bil", ".flt"})) refuse_other_content(file);
     if (one_of(extension,
                {".hgt", ".asc", ".dem", ".dt0", ".dt1", ".dt2", ".img", ".bil", ".flt"})) {
         return RasterRoute::gdal;

@@ -424,6 +424,21 @@ TEST_F(ElevationTraps, blocks_that_are_not_in_the_file_are_warned_of) {
                 testing::Contains(HasSubstr("100 % of its blocks are not in the file")));
 }
 
+TEST_F(Traps, what_was_fetched_in_a_rasters_place_is_named) {
+    for (const char* name : {"a.tif", "b.asc", "N46W122.hgt", "c.png"}) {
+        const auto said = [&](std::string_view bytes) {
+            return refusal(name, bytes).substr(std::string(name).size());
+        };
+        EXPECT_EQ(
+            said("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 3\n"),
+            ": is a pointer of Git LFS, not the raster itself; fetch that with `git lfs pull`");
+        EXPECT_THAT(said("<!DOCTYPE html><title>404"), StartsWith(": is a web page"));
+        EXPECT_THAT(said("<HTML>"), StartsWith(": is a web page"));
+        EXPECT_EQ(said("\x1f\x8b\x08"), ": is compressed by gzip; unpack it first");
+        EXPECT_EQ(said("PK\x03\x04"), ": is a zip archive; unpack it first");
+    }
+}
+
 // -- ASCII grids
 
 const std::string kHead =

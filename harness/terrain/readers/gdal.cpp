@@ -148,6 +148,9 @@ private:
             return fmt::format("its header {} does not lie beside it",
                                file_.filename().replace_extension(".hdr").string());
         }
+        if (named(".asc") && words.last().empty()) {
+            return "an Arc ASCII grid begins with ncols and nrows, and this file does not";
+        }
         return said(words);
     }
 
