@@ -87,6 +87,8 @@ CampaignOptions::~CampaignOptions() {
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Progress::warned(const std::string& warning) {
+    if (!told_.insert(warning).second) return;  // each campaign of a command says it anew
+    if (terminal_) base::write_error(kClearLine);
     base::tell("warning: {}", warning);
 }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "run/campaign.h"
@@ -56,6 +57,7 @@ private:
     [[nodiscard]] std::string time_left(std::size_t cells, double fraction) const;
 
     const bool terminal_;
+    std::set<std::string> told_;  ///< warnings
     const Clock::time_point start_ = Clock::now();
     Clock::time_point drawn_;
     std::size_t finished_ = 0;

@@ -13,6 +13,7 @@
 #include "base/isolated.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/terrain_options.h"
 #include "report/results.h"
 #include "run/exit_status.h"
 #include "run/locations.h"
@@ -90,7 +91,9 @@ std::string text_of(const ParamValue& value) {
 /// file. Returns what is to be printed.
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
                         const run::MethodInfo& method, const run::Settings& settings) {
-    const std::shared_ptr<const Terrain> terrain = terrain::open_terrain(scenario.terrain);
+    terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(scenario.terrain);
+    tell_warnings(opened.terrain->info(), opened.provenance);
+    const std::shared_ptr<const Terrain> terrain = std::move(opened.terrain);
     const auto path =
         scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
     run::VitalSigns signs;

@@ -53,6 +53,7 @@ terrain::FloatRaster raster_of(const common::LebGrid& grid, const TerrainInfo& i
 void run(const Options& options, const CLI::App& command) {
     terrain::require_exr_output(options.output);  // before all the work
     const terrain::LoadedTerrain loaded = load(options, command);
+    tell_warnings(loaded.field->info(), loaded.provenance);
     const TerrainInfo& info = loaded.field->info();
     common::LebGrid grid(*loaded.field);
     const auto start = std::chrono::steady_clock::now();

@@ -20,20 +20,30 @@ Json::Value pair(glm::dvec2 value) {
     return array;
 }
 
+/// What x, y and z of a scenario's flight mean.
+constexpr const char* kWorld = "x is east, y north, z up, in metres";
+
 Json::Value json_of(const TerrainText& text) {
     const TerrainInfo& info = text.info;
     Json::Value object;
     object["name"] = info.name;
-    object["source"] = text.kind;
+    object["source"] = text.provenance.kind;
     object["rows"] = info.rows;
     object["columns"] = info.columns;
     object["min_height_m"] = info.min_height;
     object["max_height_m"] = info.max_height;
     object["spacing_m"] = pair(info.spacing);
-    object["spacing_assumed"] = text.spacing_assumed;
+    object["spacing_assumed"] = text.provenance.spacing_assumed;
+    object["reference"] =
+        text.provenance.reference.empty() ? Json::Value() : Json::Value(text.provenance.reference);
+    object["world"] = kWorld;
     object["extent_min_m"] = pair(info.extent_min());
     object["extent_max_m"] = pair(info.extent_max());
     object["voids_filled"] = Json::UInt64(info.void_count);
+    object["warnings"] = Json::arrayValue;
+    for (const std::string& warning : warnings_of(info, text.provenance)) {
+        object["warnings"].append(warning);
+    }
     object["checksum"] = info.checksum;
     object["written"] = text.written.empty() ? Json::Value() : Json::Value(text.written);
     if (!text.store) return object;
@@ -68,21 +78,38 @@ void run(const TerrainOptions& options, const CLI::App& command) {
         terrain::check_source(source);
         const terrain::StoredTerrain store(source.file);
         const terrain::StoreSampling& sampling = store.sampling();
-        return print({.info = store.info(),
-                      .kind = fmt::format("tiled store, {}", sampling.text()),
-                      .store = sampling},
-                     options.json);
+        return print(
+            {.info = store.info(), .provenance = terrain::provenance_of(store), .store = sampling},
+            options.json);
     }
     const terrain::LoadedTerrain loaded = load(options, command);
-    print({.info = loaded.field->info(),
-           .kind = loaded.kind,
-           .spacing_assumed = loaded.spacing_assumed},
-          options.json);
+    print({.info = loaded.field->info(), .provenance = loaded.provenance}, options.json);
 }
 
 }  // namespace
 
+std::vector<std::string> warnings_of(const TerrainInfo& info,
+                                     const terrain::Provenance& provenance) {
+    std::vector<std::string> warnings = provenance.warnings;
+    constexpr double kManyVoids = 0.01;
+    const double share = double(info.void_count) / (double(info.rows) * info.columns);
+    if (share >= kManyVoids) {
+        warnings.push_back(fmt::format(
+            "terrain '{}': {:.3g} % of its samples ({}) had no data and were filled from their "
+            "neighbours: what is measured there is no terrain",
+            info.name, 100 * share, info.void_count));
+    }
+    return warnings;
+}
+
+void tell_warnings(const TerrainInfo& info, const terrain::Provenance& provenance) {
+    for (const std::string& warning : warnings_of(info, provenance)) {
+        base::tell("warning: {}", warning);
+    }
+}
+
 void print(const TerrainText& text, bool json) {
+    tell_warnings(text.info, text.provenance);
     if (json) {
         base::print("{}\n", report::to_text(json_of(text), true));
         return;
@@ -90,12 +117,18 @@ void print(const TerrainText& text, bool json) {
     const TerrainInfo& info = text.info;
     const glm::dvec2 extent = info.extent_max() - info.extent_min();
     base::print("name      {}\n", info.name);
-    base::print("source    {}\n", text.kind);
+    base::print("source    {}\n", text.provenance.kind);
     base::print("size      {} rows x {} columns\n", info.rows, info.columns);
     base::print("heights   {} to {} m\n", info.min_height, info.max_height);
-    base::print("spacing   {:.6g} m east, {:.6g} m north{}\n", info.spacing.x, info.spacing.y,
-                text.spacing_assumed ? " (assumed: the file does not say; give --spacing)" : "");
+    base::print(
+        "spacing   {:.6g} m east, {:.6g} m north{}\n", info.spacing.x, info.spacing.y,
+        text.provenance.spacing_assumed ? " (assumed: the file does not say; give --spacing)" : "");
     base::print("extent    {:.6g} x {:.6g} m, from ({:.2f}, {:.2f})\n", extent.x, extent.y,
+                info.origin.x, info.origin.y);
+    if (!text.provenance.reference.empty()) {
+        base::print("reference {}\n", text.provenance.reference);
+    }
+    base::print("world     {}; the south-west sample stands at ({:.2f}, {:.2f})\n", kWorld,
                 info.origin.x, info.origin.y);
     base::print("voids     {} filled\n", info.void_count);
     base::print("checksum  {}\n", info.checksum);

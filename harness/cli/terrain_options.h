@@ -34,15 +34,21 @@ void add_shape(CLI::App& command, TerrainOptions& options);
 /// Loads it. Throws InputError.
 [[nodiscard]] terrain::LoadedTerrain load(const TerrainOptions& options, const CLI::App& command);
 
+/// The warnings of `provenance`, and one where a hundredth or more of the samples had no data.
+[[nodiscard]] std::vector<std::string> warnings_of(const TerrainInfo& info,
+                                                   const terrain::Provenance& provenance);
+/// Tells them on standard error.
+void tell_warnings(const TerrainInfo& info, const terrain::Provenance& provenance);
+
 /// What is said of a terrain, of one in a store too.
 struct TerrainText {
     TerrainInfo info = {};
-    std::string kind = {};
-    bool spacing_assumed = false;
+    terrain::Provenance provenance = {};
     std::optional<terrain::StoreSampling> store = {};  ///< empty where it is none
     std::string written = {};                          ///< file; empty where none was written
     double seconds = 0;                                ///< that writing a store took
 };
+/// To standard output; warnings to standard error too, in JSON as well.
 void print(const TerrainText& text, bool json);
 
 /// One command each: `lodbench terrain ...`.

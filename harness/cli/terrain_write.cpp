@@ -34,12 +34,11 @@ void write_tiles(const WriteOptions& options, const terrain::TerrainSource& sour
     text.written = options.output;
     const auto start = std::chrono::steady_clock::now();
     terrain::with_rows(source, [&](terrain::TerrainRows& rows) {
-        text.kind = rows.kind();
-        text.spacing_assumed = rows.spacing_assumed();
         terrain::StoreWriter writer(terrain::upsampled(rows.info(), options.upsampling),
                                     options.step, options.output);
         terrain::upsample(rows, options.upsampling,
                           [&](std::span<const float> row) { writer.push(row); });
+        text.provenance = rows.provenance();
         text.info = writer.finish();
         text.store = writer.sampling();
     });
@@ -56,11 +55,9 @@ void write(const WriteOptions& options, const CLI::App& command) {
     }
     const terrain::LoadedTerrain loaded = load(options, command);
     terrain::write_raw(*loaded.field, options.output);
-    print({.info = loaded.field->info(),
-           .kind = loaded.kind,
-           .spacing_assumed = loaded.spacing_assumed,
-           .written = options.output},
-          options.json);
+    print(
+        {.info = loaded.field->info(), .provenance = loaded.provenance, .written = options.output},
+        options.json);
 }
 
 void add_output(CLI::App& command, WriteOptions& options) {

@@ -48,12 +48,31 @@ Json::Value parse_json(std::string_view text, const std::string& where) {
     return value;
 }
 
+namespace {
+
+/// JsonCpp begins a list on a line of its own, where tools that read line by line do not look for
+/// it. No string holds a raw line feed.
+std::string with_brackets_beside_keys(const std::string& text) {
+    std::string result;
+    result.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const std::size_t next = text[i] == '\n' ? text.find_first_not_of(' ', i + 1) : text.npos;
+        const bool bracket = next != text.npos && (text[next] == '[' || text[next] == '{');
+        if (bracket && result.ends_with(": ")) i = next;
+        result += text[i];
+    }
+    return result;
+}
+
+}  // namespace
+
 std::string exact_text(const Json::Value& value, bool indented) {
     Json::StreamWriterBuilder builder;
     builder["indentation"] = indented ? "  " : "";
     builder["precision"] = 15;  // 0.1 stays 0.1
     builder["emitUTF8"] = true;
-    return Json::writeString(builder, value);
+    const std::string text = Json::writeString(builder, value);
+    return indented ? with_brackets_beside_keys(text) : text;
 }
 
 std::string to_text(const Json::Value& value, bool indented) {

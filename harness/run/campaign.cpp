@@ -310,6 +310,7 @@ private:
             cell_record(cell.spec, cell.scenario, cell.params, result, scenario.measure.budget_ms);
         refuse_changed_input(record);
         if (!result.gl_renderer.empty()) refuse_other_renderer(gl_context(result));
+        for (const std::string& warning : result.flight_warnings) warn_once(warning);
         const std::string csv = frames_csv(result.frames);
         record["frames_checksum"] = report::checksum_of(csv);
         folder_.add_cell(cell.spec.id, record, csv);
@@ -320,6 +321,15 @@ private:
             write_run();
         }
         observer_.cell_finished(cell, index, plan_.cells.size(), record);
+    }
+
+    /// Of the run, not of one cell: said and written when the first cell brings it.
+    void warn_once(const std::string& warning) {
+        if (std::ranges::find(outcome_.warnings, warning) != outcome_.warnings.end()) return;
+        outcome_.warnings.push_back(warning);
+        run_["warnings"].append(warning);
+        write_run();
+        observer_.warned(warning);
     }
 
     void write_run() {

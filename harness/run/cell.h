@@ -75,6 +75,7 @@ struct CellResult {
     std::optional<double> claimed_px;
     Json::Value truth;  ///< as truth_record gives it; null where the truth was not measured
     std::vector<std::string> warnings;
+    std::vector<std::string> flight_warnings;  ///< of terrain and cameras: the same for every cell
     // Context as the child saw it.
     std::string gl_vendor, gl_renderer, gl_version, device_description;
     bool software = false;

@@ -218,6 +218,7 @@ std::string write_result(const CellResult& result) {
     json["truth"] = result.truth;
     json["modules"] = texts(result.modules);
     json["warnings"] = texts(result.warnings);
+    json["flight_warnings"] = texts(result.flight_warnings);
     json["gl_vendor"] = result.gl_vendor;
     json["gl_renderer"] = result.gl_renderer;
     json["gl_version"] = result.gl_version;
@@ -274,6 +275,9 @@ CellResult read_result(std::string_view text, const std::string& where) {
         }
         for (const Json::Value& warning : report::get_array(json, "warnings", where)) {
             result.warnings.push_back(warning.asString());
+        }
+        for (const Json::Value& warning : report::get_array(json, "flight_warnings", where)) {
+            result.flight_warnings.push_back(warning.asString());
         }
         result.gl_vendor = report::get_string(json, "gl_vendor", where);
         result.gl_renderer = report::get_string(json, "gl_renderer", where);
@@ -349,7 +353,8 @@ Json::Value cell_record(const CellSpec& spec, const std::string& scenario, const
     json["warmup_frames"] = result.warmup_frames;
     json["frames_in_flight"] = result.frames_in_flight;
     json["modules"] = texts(result.modules);
-    json["warnings"] = texts(result.warnings);
+    json["warnings"] = texts(result.flight_warnings);
+    for (const std::string& warning : result.warnings) json["warnings"].append(warning);
     return json;
 }
 

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <vector>
 
+#include "api/error.h"
 #include "measure/needed_tiles.h"
 #include "report/json.h"
 #include "report/png.h"
 #include "report/results.h"
+#include "run/flight_check.h"
 
 namespace lodbench::run {
 
@@ -94,6 +96,22 @@ Json::Value pair_json(double x, double y) {
     return json;
 }
 
+/// Of a flight that was recorded before; none where its file is damaged, which the report says.
+std::vector<std::string> recorded_warnings(const fs::path& file) {
+    std::vector<std::string> warnings;
+    try {
+        const Json::Value json = report::parse_json(report::read_text(file), file.string());
+        for (const Json::Value& warning : report::get_array(json, "warnings", file.string())) {
+            warnings.push_back(warning.asString());
+        }
+    } catch (const InputError&) {
+        return {};
+    } catch (const Json::Exception&) {
+        return {};
+    }
+    return warnings;
+}
+
 }  // namespace
 
 report::Image hillshade(const Terrain& terrain, int largest) {
@@ -133,11 +151,12 @@ report::Image hillshade(const Terrain& terrain, int largest) {
     return image;
 }
 
-void record_flight(const fs::path& out, const std::string& name, const Terrain& terrain, int frames,
-                   const std::function<Camera(int)>& camera_at) {
+std::vector<std::string> record_flight(const fs::path& out, const std::string& name,
+                                       const Terrain& terrain, int frames,
+                                       const std::function<Camera(int)>& camera_at) {
     const fs::path file = out / "flights" / (name + ".json");
     std::error_code ignored;
-    if (fs::exists(file, ignored)) return;
+    if (fs::exists(file, ignored)) return recorded_warnings(file);
     fs::create_directories(file.parent_path(), ignored);
     const report::Image map = hillshade(terrain, kLargestMap);
     report::write_png(out / "flights" / (name + "__hillshade.png"), map.width, map.height, map.rgb);
@@ -157,8 +176,10 @@ void record_flight(const fs::path& out, const std::string& name, const Terrain& 
     json["positions"] = Json::arrayValue;
     json["directions"] = Json::arrayValue;
     measure::NeededTiles needed(terrain, {kTargetsPx.begin(), kTargetsPx.end()});
+    FlightCheck check(terrain);
     for (int frame = 0; frame < frames; ++frame) {
         const Camera camera = camera_at(frame);
+        check.add(camera);
         json["positions"].append(vector_json(camera.position));
         json["directions"].append(vector_json(camera.forward()));
         needed.add(camera);
@@ -172,7 +193,11 @@ void record_flight(const fs::path& out, const std::string& name, const Terrain& 
         entry["most_tiles_in_a_frame"] = Json::UInt64(need.most_in_a_frame);
         json["needed"].append(entry);
     }
+    const std::vector<std::string> warnings = check.warnings(name);
+    json["warnings"] = Json::arrayValue;
+    for (const std::string& warning : warnings) json["warnings"].append(warning);
     report::write_whole(file, report::seal(json) + "\n");
+    return warnings;
 }
 
 }  // namespace lodbench::run

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "api/camera.h"
 #include "api/terrain.h"
@@ -17,8 +18,10 @@ namespace lodbench::run {
 [[nodiscard]] report::Image hillshade(const Terrain& terrain, int largest);
 
 /// Writes flights/<name>.json and flights/<name>__hillshade.png into the results folder `out`,
-/// unless they are there. `camera_at` gives the camera of each of the frames.
-void record_flight(const std::filesystem::path& out, const std::string& name,
-                   const Terrain& terrain, int frames, const std::function<Camera(int)>& camera_at);
+/// unless they are there. `camera_at` gives the camera of each of the frames. Returns what is to be
+/// said of the flight, see FlightCheck, or what the file that is there says.
+std::vector<std::string> record_flight(const std::filesystem::path& out, const std::string& name,
+                                       const Terrain& terrain, int frames,
+                                       const std::function<Camera(int)>& camera_at);
 
 }  // namespace lodbench::run

@@ -88,8 +88,11 @@ public:
         measurer_->write_picture(shot_path("worst"), spec_.id);
         measurer_.reset();
         stage_->release();
-        record_flight(spec_.out, scenario_.name, *terrain_, scenario_.frames,
-                      [this](int frame) { return camera_at(frame); });
+        const std::vector<std::string> warnings =
+            record_flight(spec_.out, scenario_.name, *terrain_, scenario_.frames,
+                          [this](int frame) { return camera_at(frame); });
+        result_.flight_warnings.insert(result_.flight_warnings.end(), warnings.begin(),
+                                       warnings.end());
     }
 
     [[nodiscard]] std::string where() const {
@@ -164,7 +167,9 @@ private:
 
 void Flight::open() {
     signs_.enter(Call::load_terrain);
-    terrain_ = terrain::open_terrain(scenario_.terrain);
+    terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(scenario_.terrain);
+    terrain_ = std::move(opened.terrain);
+    result_.flight_warnings = std::move(opened.provenance.warnings);
     const bool stored = std::dynamic_pointer_cast<const terrain::HeightField>(terrain_) == nullptr;
     methods_terrain_ = stored ? terrain::open_terrain(scenario_.terrain) : terrain_;
     // Known before an hour's flight, not after.

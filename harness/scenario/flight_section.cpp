@@ -34,7 +34,11 @@ void read_line(Section& flight, std::size_t dimensions, PathSpec& spec) {
     read_angles(flight, key);
     spec.keyframes.push_back(key);
     if (end) {
-        if (*end == *start) flight.refuse("end", "the same as start; move one of them");
+        if (*end == *start) {
+            flight.refuse("end",
+                          "the same as start; move one of them, or, for a camera that stands "
+                          "still, fly kind = \"orbit\" with turns = 0 or a recorded flight");
+        }
         key.position = as_position(*end);
         spec.keyframes.push_back(key);
     } else if (!key.heading || spec.speed == 0) {

@@ -15,8 +15,11 @@ struct RecordedPlace {
 };
 
 /// Parses "frame,x,y,z,heading,pitch,roll": that header line, then one row of seven finite numbers
-/// for each frame 0, 1, 2, ... Lines end with LF or CRLF; there are no quotes, comments or empty
-/// lines. Throws InputError as "FILE:LINE: what VALUE is wrong with; remedy".
+/// for each frame 0, 1, 2, ... As spreadsheets write it, too: a UTF-8 byte order mark; lines that
+/// end with LF, CRLF or CR; fields between semicolons or tabs, as the header has them, then with
+/// decimal points or decimal commas, not both in one file; fields in quotes; blanks around fields;
+/// empty lines at the end. There are no comments. Throws InputError as "FILE:LINE: what VALUE is
+/// wrong with; remedy".
 [[nodiscard]] std::vector<RecordedPlace> parse_recorded(std::string_view text,
                                                         const std::filesystem::path& file);
 

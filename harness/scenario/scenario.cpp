@@ -11,6 +11,7 @@
 #include "base/isolated.h"
 #include "base/printable.h"
 #include "scenario/flight_section.h"
+#include "scenario/recorded_path.h"
 #include "scenario/toml_section.h"
 #include "terrain/open_terrain.h"
 #include "terrain/synthetic.h"
@@ -146,11 +147,20 @@ void read_camera(Section& top, Scenario& scenario) {
 void read_flight(Section& top, const std::filesystem::path& folder, Scenario& scenario) {
     auto flight = top.section("flight");
     if (!flight) top.require("flight", "write a table [flight] with kind = \"...\"");
-    set(scenario.frames, flight->integer("frames", 1, kMaxFrames));
+    const auto frames = flight->integer("frames", 1, kMaxFrames);
+    set(scenario.frames, frames);
     set(scenario.rate_hz, flight->number("rate_hz", {1e-3, 1e6}));
     set(scenario.warmup_frames, flight->integer("warmup_frames", 0, kMaxFrames));
     scenario.path = read_path(*flight, folder);
     flight->refuse_unknown();
+    if (scenario.path.kind != PathKind::recorded || frames) return;
+    const std::size_t rows = load_recorded(scenario.path.recorded).size();
+    if (rows > std::size_t(kMaxFrames)) {
+        flight->refuse("file", fmt::format("{} frames, at most {} are flown; write frames = ... to "
+                                           "fly the first of them",
+                                           rows, kMaxFrames));
+    }
+    scenario.frames = int(rows);
 }
 
 void read_measure_and_run(Section& top, Scenario& scenario) {

@@ -40,10 +40,10 @@ struct Scenario {
     Viewport viewport;
     double vertical_fov = 1.0471975511965976;  ///< radians
     double near_plane = 1.0;                   ///< metres
-    int frames = 120;                          ///< >= 1
-    int warmup_frames = 5;                     ///< >= 0
-    double rate_hz = 60;                       ///< simulated frames per second
-    int repetitions = 3;                       ///< >= 1
+    int frames = 120;  ///< >= 1; of a recorded flight, unless it is written, all rows of its file
+    int warmup_frames = 5;  ///< >= 0
+    double rate_hz = 60;    ///< simulated frames per second
+    int repetitions = 3;    ///< >= 1
     std::uint64_t seed = 1;
     double cell_time_limit_s = 600;
     double frame_time_limit_s = 60;  ///< no sign of life for so long is a hang

@@ -58,9 +58,28 @@ const char* kind_of(const toml::node& node) {
     return "a date or time";
 }
 
+/// A key as messages write it: bare where TOML lets it be, else quoted, escaped and of bounded
+/// length.
+std::string key_name(std::string_view key) {
+    const bool bare = key.size() <= 64 && std::ranges::all_of(key, [](char c) {
+                          return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                                 (c >= '0' && c <= '9') || c == '_' || c == '-';
+                      });
+    return bare && !key.empty() ? std::string(key) : base::printable(key);
+}
+
 }  // namespace
 
 std::string describe(const toml::node& node) {
+    constexpr std::size_t kMaxEntries = 4;  // of an array that are shown
+    if (const auto* array = node.as_array()) {
+        std::string text;
+        for (std::size_t i = 0; i < array->size() && i < kMaxEntries; ++i) {
+            const toml::node& entry = *array->get(i);
+            text += (i > 0 ? ", " : "") + (entry.is_array() ? "[...]" : describe(entry));
+        }
+        return fmt::format("[{}{}]", text, array->size() > kMaxEntries ? ", ..." : "");
+    }
     if (const auto* text = node.as_string()) return base::printable(text->get());
     if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
     if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
@@ -80,7 +99,8 @@ std::string Section::where(std::string_view key) const {
 void Section::refuse_node(std::string_view key, const toml::node& node,
                           const std::string& message) const {
     throw InputError(fmt::format("{}: {}{}{} = {}: {}", terrain::toml_place(node, file_), title_,
-                                 title_.empty() ? "" : " ", key, describe(node), message));
+                                 title_.empty() ? "" : " ", key_name(key), describe(node),
+                                 message));
 }
 
 void Section::refuse(std::string_view key, const std::string& message) const {
@@ -91,7 +111,7 @@ void Section::refuse(std::string_view key, const std::string& message) const {
 
 void Section::require(std::string_view key, const std::string& message) const {
     throw InputError(fmt::format("{}: {}{}{} is missing: {}", where(), title_,
-                                 title_.empty() ? "" : " ", key, message));
+                                 title_.empty() ? "" : " ", key_name(key), message));
 }
 
 const toml::node* Section::node(std::string_view key) {
@@ -161,10 +181,11 @@ std::optional<std::string> Section::text(std::string_view key) {
             key, *found,
             fmt::format("{} bytes of text; write at most {}", written.size(), kMaxTextBytes));
     }
-    const auto is_control = [](char c) {
-        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-    };
-    if (std::any_of(written.begin(), written.end(), is_control)) {
+    bool plain = true;
+    base::for_each_character(written, [&plain](std::string_view character, bool valid) {
+        plain = plain && valid && !base::is_control(character);
+    });
+    if (!plain) {
         refuse_node(key, *found, "text with control characters; write it on one line without them");
     }
     return written;

@@ -76,7 +76,8 @@ private:
     std::vector<std::string> asked_;
 };
 
-/// A value for messages: text quoted and cut, numbers as they are, tables and arrays by their kind.
+/// A value for messages: text quoted and cut, numbers as they are, of an array its first
+/// entries, tables by their kind.
 [[nodiscard]] std::string describe(const toml::node& node);
 
 }  // namespace lodbench::scenario

@@ -22,13 +22,13 @@ LoadedTerrain load_raster(const TerrainSource& source) {
     const std::uint64_t voids = fill_voids(raster.heights, info.rows, info.columns, info.spacing);
     if (voids == raster.heights.size()) throw InputError(raster.all_void);
     info.void_count += voids;
-    return {std::make_unique<HeightField>(info, std::move(raster.heights)), raster.kind,
-            raster.spacing_assumed};
+    return {std::make_unique<HeightField>(info, std::move(raster.heights)),
+            std::move(raster.provenance)};
 }
 
 LoadedTerrain load_store(const TerrainSource& source) {
     const StoredTerrain store(source.file, source.cold);
-    return {whole_field(store), fmt::format("tiled store, {}", store.sampling().text()), false};
+    return {whole_field(store), provenance_of(store)};
 }
 
 LoadedTerrain load_synthetic(const TerrainSource& source) {
@@ -48,7 +48,7 @@ LoadedTerrain load_synthetic(const TerrainSource& source) {
                     source.spacing_y.value_or(kSyntheticSpacing)};
     info.origin = {source.origin_x.value_or(0), source.origin_y.value_or(0)};
     std::vector<float> heights = make_synthetic(source, info);
-    return {std::make_unique<HeightField>(info, std::move(heights)), "synthetic", false};
+    return {std::make_unique<HeightField>(info, std::move(heights)), {.kind = "synthetic"}};
 }
 
 }  // namespace

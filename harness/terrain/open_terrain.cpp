@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/error.h"
+#include "terrain/load_terrain.h"
 #include "terrain/memory.h"
 #include "terrain/tile_store.h"
 
@@ -28,9 +29,6 @@ void check_overrides(const TerrainSource& source) {
     check("vertical offset", source.vertical_offset, false);
     check("origin (x)", source.origin_x, false);
     check("origin (y)", source.origin_y, false);
-    if (source.no_data && std::isinf(*source.no_data)) {
-        throw InputError("terrain: no-data is infinite; it must be a number or nan");
-    }
 }
 
 /// A store's heights are what they are, and so is where they stand.
@@ -71,10 +69,19 @@ void check_source(const TerrainSource& source) {
 }
 
 std::unique_ptr<Terrain> open_terrain(const TerrainSource& source) {
-    if (source.file.empty() || !is_store(source.file)) return load_terrain(source);
+    return open_terrain_with_provenance(source).terrain;
+}
+
+OpenTerrain open_terrain_with_provenance(const TerrainSource& source) {
+    if (source.file.empty() || !is_store(source.file)) {
+        LoadedTerrain loaded = load_terrain_with_provenance(source);
+        return {std::move(loaded.field), std::move(loaded.provenance)};
+    }
     try {
         check_source(source);
-        return std::make_unique<StoredTerrain>(source.file, source.cold);
+        auto store = std::make_unique<StoredTerrain>(source.file, source.cold);
+        Provenance provenance = provenance_of(*store);
+        return {std::move(store), std::move(provenance)};
     } catch (const InputError& error) {
         if (source.where.empty()) throw;
         throw InputError(fmt::format("{}: {}", source.where, error.what()));

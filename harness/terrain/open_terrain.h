@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "terrain/height_field.h"
+#include "terrain/provenance.h"
 
 namespace lodbench::terrain {
 
@@ -12,9 +13,15 @@ namespace lodbench::terrain {
 /// to what it names.
 void check_source(const TerrainSource& source);
 
+struct OpenTerrain {
+    std::unique_ptr<Terrain> terrain;
+    Provenance provenance;
+};
+
 /// Opens a store (`.tiles`), of which nothing but header and index is read, or loads what else the
 /// source names. Throws InputError with file, value and remedy, EnvironmentError where the disk
 /// refuses.
+[[nodiscard]] OpenTerrain open_terrain_with_provenance(const TerrainSource& source);
 [[nodiscard]] std::unique_ptr<Terrain> open_terrain(const TerrainSource& source);
 
 /// Throws InputError, naming the terrain, where the memory does not hold it as a HeightField:

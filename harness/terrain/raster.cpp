@@ -37,7 +37,7 @@ Raster read_rows(const TerrainSource& source, const auto& begin, const auto& tak
         rows.next(heights);
         take(heights);
     }
-    return {info, {}, rows.kind(), rows.spacing_assumed(), rows.all_void()};
+    return {info, {}, rows.provenance(), rows.all_void()};
 }
 
 Raster read_here(const TerrainSource& source) {
@@ -73,8 +73,11 @@ std::string write_description(const Raster& raster) {
     json["origin_x"] = bits_of(raster.info.origin.x);
     json["origin_y"] = bits_of(raster.info.origin.y);
     json["void_count"] = Json::UInt64(raster.info.void_count);
-    json["kind"] = raster.kind;
-    json["spacing_assumed"] = raster.spacing_assumed;
+    json["kind"] = raster.provenance.kind;
+    json["spacing_assumed"] = raster.provenance.spacing_assumed;
+    json["reference"] = raster.provenance.reference;
+    json["warnings"] = Json::arrayValue;
+    for (const std::string& text : raster.provenance.warnings) json["warnings"].append(text);
     json["all_void"] = raster.all_void;
     Json::StreamWriterBuilder builder;
     builder["emitUTF8"] = true;  // names are bytes, whatever they spell
@@ -94,8 +97,12 @@ Raster read_description(const std::string& text) {
     raster.info.spacing = {number_of(json["spacing_x"]), number_of(json["spacing_y"])};
     raster.info.origin = {number_of(json["origin_x"]), number_of(json["origin_y"])};
     raster.info.void_count = json["void_count"].asUInt64();
-    raster.kind = json["kind"].asString();
-    raster.spacing_assumed = json["spacing_assumed"].asBool();
+    raster.provenance.kind = json["kind"].asString();
+    raster.provenance.spacing_assumed = json["spacing_assumed"].asBool();
+    raster.provenance.reference = json["reference"].asString();
+    for (const Json::Value& warning : json["warnings"]) {
+        raster.provenance.warnings.push_back(warning.asString());
+    }
     raster.all_void = json["all_void"].asString();
     return raster;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "terrain/height_field.h"
+#include "terrain/provenance.h"
 
 namespace lodbench::terrain {
 
@@ -14,8 +15,7 @@ namespace lodbench::terrain {
 struct Raster {
     TerrainInfo info;  ///< as RasterRows has it
     std::vector<float> heights;
-    std::string kind;
-    bool spacing_assumed = false;
+    Provenance provenance;
     std::string all_void;  ///< what to say where there is no valid sample
 };
 

@@ -11,6 +11,7 @@
 
 #include "api/error.h"
 #include "terrain/raster_reader.h"
+#include "terrain/world_file.h"
 
 namespace lodbench::terrain {
 namespace {
@@ -26,7 +27,8 @@ public:
           stream_(file, std::ios::binary),
           file_bytes_(std::filesystem::file_size(file)) {}
 
-    bool georeferenced() {
+    /// Whether it has a tag of GeoTIFF or GDAL, or a second directory: a mask, or more rasters.
+    bool ask_for_gdal() {
         std::array<char, 2> order{};
         stream_.read(order.data(), 2);
         if (!stream_ || order[0] != order[1] || (order[0] != 'I' && order[0] != 'M')) return false;
@@ -50,7 +52,8 @@ public:
             if (!inside) refuse_truncated(fmt::format("the data of tag {}", tag));
             found = found || std::ranges::find(kTags, tag) != kTags.end();
         }
-        return found;
+        const std::uint64_t second = number(word);
+        return found || (stream_ && second != 0);
     }
 
 private:
@@ -86,6 +89,39 @@ private:
     bool big_endian_ = false;
 };
 
+/// Whether files beside a TIFF, which GDAL reads with it, say where it lies or mask it.
+bool says_more_beside(const std::filesystem::path& file) {
+    std::error_code error;
+    for (const char* ending : {".aux.xml", ".msk"}) {
+        if (std::filesystem::exists(file.string() + ending, error)) return true;
+    }
+    return find_world_file(file).has_value();
+}
+
+/// What lies under a raster's name where fetching it went wrong, by its first bytes.
+void refuse_other_content(const std::filesystem::path& file) {
+    struct Content {
+        std::string_view begin;
+        const char* words;
+    };
+    static constexpr std::array kContents = {
+        Content{"version https://git-lfs",
+                "a pointer of Git LFS, not the raster itself; fetch that with `git lfs pull`"},
+        Content{"<!doctype html", "a web page, not a raster; fetch it anew and look at the page"},
+        Content{"<html", "a web page, not a raster; fetch it anew and look at the page"},
+        Content{"\x1f\x8b", "compressed by gzip; unpack it first"},
+        Content{"pk\x03\x04", "a zip archive; unpack it first"},
+    };
+    std::string begin(32, '\0');
+    std::ifstream(file, std::ios::binary).read(begin.data(), std::streamsize(begin.size()));
+    std::ranges::transform(begin, begin.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    for (const Content& content : kContents) {
+        if (!begin.starts_with(content.begin)) continue;
+        throw InputError(fmt::format("{}: is {}", file.string(), content.words));
+    }
+}
+
 bool one_of(std::string_view extension, std::initializer_list<std::string_view> known) {
     return std::find(known.begin(), known.end(), extension) != known.end();
 }
@@ -107,12 +143,15 @@ RasterRoute raster_route(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return char(std::tolower(c)); });
+    // Raw heights may begin with any bytes.
+    if (!one_of(extension, {".raw", ".r16", ".bin", ".bil", ".flt"})) refuse_other_content(file);
     if (one_of(extension,
                {".hgt", ".asc", ".dem", ".dt0", ".dt1", ".dt2", ".img", ".bil", ".flt"})) {
         return RasterRoute::gdal;
     }
     if (one_of(extension, {".tif", ".tiff"})) {
-        return TiffTags(file).georeferenced() ? RasterRoute::gdal : RasterRoute::oiio;
+        const bool gdal = TiffTags(file).ask_for_gdal() || says_more_beside(file);
+        return gdal ? RasterRoute::gdal : RasterRoute::oiio;
     }
     if (one_of(extension, {".png", ".exr"})) return RasterRoute::oiio;
     if (extension == ".pgm") return RasterRoute::pgm;

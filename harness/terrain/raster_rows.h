@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "terrain/height_field.h"
+#include "terrain/provenance.h"
 #include "terrain/raster_reader.h"
 
 namespace lodbench::terrain {
@@ -22,10 +23,8 @@ public:
     ~RasterRows();
 
     [[nodiscard]] const TerrainInfo& info() const { return info_; }
-    /// "png, uint16, through OpenImageIO".
-    [[nodiscard]] const std::string& kind() const { return reader_->description().kind; }
-    /// Neither source, sidecar nor file says it: 1 m was taken.
-    [[nodiscard]] bool spacing_assumed() const { return spacing_assumed_; }
+    /// With what the rows so far make one suspect.
+    [[nodiscard]] Provenance provenance() const;
 
     /// The next row, `columns` heights in metres; NaN where there is no data. Returns how many of
     /// them have none. Throws InputError where the file cannot be read or a height is not finite.
@@ -38,7 +37,7 @@ private:
     std::unique_ptr<RasterReader> reader_;
     std::unique_ptr<HeightRule> rule_;
     TerrainInfo info_;
-    bool spacing_assumed_ = false;
+    Provenance provenance_;
     std::vector<double> samples_;
     int row_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <vector>
@@ -35,6 +36,12 @@ public:
           encoding_(encoding),
           big_endian_(big_endian) {
         description_ = std::move(description);
+        if (encoding != Encoding::float32) {
+            const double values = std::exp2(8 * int(bytes_of(encoding)));
+            description_.integers = encoding == Encoding::int16
+                                        ? std::pair{-values / 2, values / 2 - 1}
+                                        : std::pair{0.0, values - 1};
+        }
         check_raster_size(file, description_.rows, description_.columns);
         const std::uint64_t expected = offset + std::uint64_t(description_.rows) *
                                                     std::uint64_t(description_.columns) *

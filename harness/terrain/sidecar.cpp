@@ -31,9 +31,9 @@ public:
 
     [[nodiscard]] double finite() const { return finite_number(node_); }
 
-    [[nodiscard]] double number_or_nan() const {
-        const auto value = node_.value<double>();
-        if (!value || std::isinf(*value)) refuse("must be a number or nan");
+    [[nodiscard]] double number() const {
+        const auto value = node_.is_number() ? node_.value<double>() : std::nullopt;
+        if (!value) refuse("must be a number, nan or inf");
         return *value;
     }
 
@@ -128,8 +128,7 @@ constexpr std::pair<std::string_view, Setter> kKeys[] = {
      }},
     {"vertical_offset",
      [](Sidecar& sidecar, const Entry& entry) { sidecar.vertical_offset = entry.finite(); }},
-    {"no_data",
-     [](Sidecar& sidecar, const Entry& entry) { sidecar.no_data = entry.number_or_nan(); }},
+    {"no_data", [](Sidecar& sidecar, const Entry& entry) { sidecar.no_data = entry.number(); }},
     {"voids_filled", [](Sidecar& sidecar,
                         const Entry& entry) { sidecar.voids_filled = entry.integer(0, kMaxSide); }},
     {"rows",

@@ -17,7 +17,7 @@ struct Sidecar {
     std::optional<double> spacing_x, spacing_y;  ///< `spacing = 160` or `spacing = [x, y]`, metres
     std::optional<double> vertical_scale;        ///< metres per unit of the file
     std::optional<double> vertical_offset;       ///< metres, added after scaling
-    std::optional<double> no_data;               ///< in units of the file; `nan` is allowed
+    std::optional<double> no_data;               ///< in units of the file; may be nan or inf
     std::optional<double> origin_x,
         origin_y;  ///< `origin = [x, y]`, metres, of the south-west sample
     std::optional<std::uint64_t>

@@ -21,11 +21,8 @@ struct VoidMet {
 
 class FileRows final : public TerrainRows {
 public:
-    explicit FileRows(const TerrainSource& source) : rows_(source) {
-        info_ = rows_.info();
-        kind_ = rows_.kind();
-        spacing_assumed_ = rows_.spacing_assumed();
-    }
+    explicit FileRows(const TerrainSource& source) : rows_(source) { info_ = rows_.info(); }
+    [[nodiscard]] Provenance provenance() const override { return rows_.provenance(); }
     void next(std::span<float> heights) override {
         if (rows_.next(heights) > 0) throw VoidMet{row_};
         ++row_;
@@ -39,12 +36,11 @@ private:
 /// Reads as many rows at once as a tile has cells: each tile of a store once.
 class ServedRows final : public TerrainRows {
 public:
-    ServedRows(std::unique_ptr<const Terrain> terrain, std::string kind, bool spacing_assumed)
-        : terrain_(std::move(terrain)) {
+    ServedRows(std::unique_ptr<const Terrain> terrain, Provenance provenance)
+        : terrain_(std::move(terrain)), provenance_(std::move(provenance)) {
         info_ = terrain_->info();
-        kind_ = std::move(kind);
-        spacing_assumed_ = spacing_assumed;
     }
+    [[nodiscard]] Provenance provenance() const override { return provenance_; }
     void next(std::span<float> heights) override {
         const auto columns = std::size_t(info_.columns);
         if (row_ % kTileCells == 0) {
@@ -60,13 +56,14 @@ public:
 
 private:
     std::unique_ptr<const Terrain> terrain_;
+    Provenance provenance_;
     std::vector<float> strip_;
     int row_ = 0;
 };
 
 void give_loaded(const TerrainSource& source, const std::function<void(TerrainRows&)>& body) {
     LoadedTerrain loaded = load_terrain_with_provenance(source);
-    ServedRows rows(std::move(loaded.field), loaded.kind, loaded.spacing_assumed);
+    ServedRows rows(std::move(loaded.field), std::move(loaded.provenance));
     body(rows);
 }
 
@@ -89,8 +86,8 @@ void with_rows(const TerrainSource& source, const std::function<void(TerrainRows
     if (source.file.empty()) return give_loaded(source, body);
     if (is_store(source.file)) {
         auto store = std::make_unique<StoredTerrain>(source.file, source.cold);
-        std::string kind = fmt::format("tiled store, {}", store->sampling().text());
-        ServedRows rows(std::move(store), std::move(kind), false);
+        Provenance provenance = provenance_of(*store);
+        ServedRows rows(std::move(store), std::move(provenance));
         return body(rows);
     }
     const std::optional<int> row = give_raster(source, body);

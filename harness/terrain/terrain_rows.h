@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "terrain/height_field.h"
+#include "terrain/provenance.h"
 
 namespace lodbench::terrain {
 
@@ -21,16 +22,13 @@ public:
 
     /// Height range and checksum may not be known yet.
     [[nodiscard]] const TerrainInfo& info() const { return info_; }
-    /// "png, uint16, through OpenImageIO"; "tiled store, float32"; "synthetic".
-    [[nodiscard]] const std::string& kind() const { return kind_; }
-    [[nodiscard]] bool spacing_assumed() const { return spacing_assumed_; }
+    /// Whole once the last row is read.
+    [[nodiscard]] virtual Provenance provenance() const = 0;
     /// The next row, `columns` heights in metres.
     virtual void next(std::span<float> heights) = 0;
 
 protected:
     TerrainInfo info_;
-    std::string kind_;
-    bool spacing_assumed_ = false;
 };
 
 /// Gives the source's rows to `body`. Of a raster or a store only a few rows are held. But voids

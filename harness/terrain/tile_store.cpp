@@ -224,4 +224,8 @@ void StoredTerrain::copy_samples(const SampleRect& rect, std::span<float> height
     }
 }
 
+Provenance provenance_of(const StoredTerrain& store) {
+    return {.kind = fmt::format("tiled store, {}", store.sampling().text())};
+}
+
 }  // namespace lodbench::terrain

@@ -11,6 +11,7 @@
 
 #include "api/terrain.h"
 #include "base/child_process.h"
+#include "terrain/provenance.h"
 #include "terrain/tile_store_format.h"
 
 namespace lodbench::terrain {
@@ -55,5 +56,8 @@ private:
     mutable std::mutex mutex_;                          ///< of the cache
     mutable std::list<std::pair<TileId, Tile>> cache_;  ///< used last first
 };
+
+/// What a store says of itself. It does not keep what was said of the file it was made of.
+[[nodiscard]] Provenance provenance_of(const StoredTerrain& store);
 
 }  // namespace lodbench::terrain

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "api/error.h"
+#include "base/printable.h"
 
 namespace lodbench::terrain {
 namespace {
@@ -112,12 +113,17 @@ std::string place(const toml::source_region& source, const std::filesystem::path
     return fmt::format("{}:{}", file.string(), source.begin.line);
 }
 
+/// The parser's words, which quote the file's bytes: one line of plain text of bounded length.
 std::string one_line(std::string_view text) {
-    std::string line(text);
-    for (char& c : line) {
-        if (static_cast<unsigned char>(c) < ' ') c = ' ';
-    }
-    return line;
+    constexpr std::size_t kMaxBytes = 300;
+    std::string line;
+    bool cut = false;
+    base::for_each_character(text, [&](std::string_view character, bool /*valid*/) {
+        cut = cut || line.size() >= kMaxBytes;
+        if (cut) return;
+        line += character == "\n" ? " " : base::plain(character);
+    });
+    return cut ? line + "..." : line;
 }
 
 }  // namespace

@@ -361,5 +361,42 @@ TEST_F(Run, run_json_holds_the_whole_context) {
     }
 }
 
+TEST_F(Run, a_flight_that_sees_no_terrain_is_told_once_and_stands_in_the_results) {
+    // Over the deep sea, as high as the sea's surface.
+    const fs::path file = folder_.path() / "deep.toml";
+    std::ofstream(file) << "[terrain]\nsynthetic = \"plane\"\nrows = 17\ncolumns = 17\n"
+                           "[terrain.shape]\nheight = -8000\n[viewport]\nwidth = 48\nheight = 36\n"
+                           "[flight]\nkind = \"orbit\"\nrelative = true\ncentre = [0.5, 0.5]\n"
+                           "radius = 300\nturns = 0\nframes = 3\nwarmup_frames = 0\n"
+                           "[run]\nrepetitions = 2\n";
+    const auto times = [](const std::string& text, const std::string& part) {
+        int count = 0;
+        for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+        return count;
+    };
+    const Spoken spoken = run(file, {"--method", "full-grid"}, out());
+    ASSERT_EQ(spoken.status, 0) << spoken.err;
+    const std::string blind =
+        "warning: the flight of 'deep': no terrain is in view in all 3 frames";
+    EXPECT_EQ(times(spoken.err, blind), 1) << spoken.err;
+    EXPECT_EQ(times(spoken.err, "the camera stands still"), 1) << spoken.err;
+    const Json::Value run_json = report::parse_json(text_of(out() / "run.json"), "run.json");
+    EXPECT_EQ(times(report::to_text(run_json["warnings"]), "no terrain is in view"), 1);
+    const std::vector<Json::Value> cells = cells_of(out());
+    ASSERT_EQ(cells.size(), 2U);
+    for (const Json::Value& cell : cells) {
+        EXPECT_EQ(times(report::to_text(cell["warnings"]), "no terrain is in view"), 1);
+    }
+    EXPECT_EQ(times(text_of(out() / "summary.md"), "no terrain is in view"), 1);
+    // As tools that read line by line look for it.
+    EXPECT_THAT(text_of(out() / "run.json"), HasSubstr("\"warnings\" : [\n"));
+    const Finished reported = run_lodbench(
+        {"report", out().string(), "-o", (folder_.path() / "r.html").string()}, folder_.path());
+    ASSERT_EQ(reported.status, 0) << reported.output;
+    EXPECT_EQ(
+        times(text_of(folder_.path() / "r.html"), "<li>the flight of &#39;deep&#39;: no terrain"),
+        1);
+}
+
 }  // namespace
 }  // namespace lodbench::test

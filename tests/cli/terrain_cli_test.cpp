@@ -4,6 +4,7 @@
 #include <json/json.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -36,9 +37,10 @@ protected:
         outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
         return outcome;
     }
+    /// The object in the output: a warning may stand before it, on standard error.
     static Json::Value parsed(const std::string& text) {
         Json::Value value;
-        std::istringstream(text) >> value;
+        std::istringstream(text.substr(std::min(text.find('{'), text.size()))) >> value;
         return value;
     }
     lodbench::test::TemporaryFolder folder_;

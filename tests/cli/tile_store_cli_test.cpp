@@ -31,7 +31,9 @@ protected:
     Json::Value json(const std::vector<std::string>& arguments) const {
         const Finished finished = terrain(arguments);
         EXPECT_EQ(finished.status, 0) << finished.output;
-        return report::parse_json(finished.output, "output");
+        // A warning may stand before the object, on standard error.
+        const std::string& text = finished.output;
+        return report::parse_json(text.substr(std::min(text.find('{'), text.size())), "output");
     }
     [[nodiscard]] std::size_t file_count() const {
         return std::size_t(std::distance(fs::directory_iterator(files_), {}));

@@ -412,6 +412,34 @@ TEST(Recorded, replays_its_rows_and_needs_enough_of_them) {
     EXPECT_THAT(refusal(spec), HasSubstr("/nonexistent/flight.csv"));
 }
 
+TEST(Recorded, files_of_spreadsheets_are_read_as_they_are_meant) {
+    const std::string plain =
+        "frame,x,y,z,heading,pitch,roll\n0,1.5,-2e3,3.25,90,-30,0\n1,2.5,0,4,91,-31,0\n";
+    const std::vector<RecordedPlace> expected = parse_recorded(plain, "flight.csv");
+    ASSERT_EQ(expected.size(), 2U);
+    EXPECT_EQ(expected[0].position, glm::dvec3(1.5, -2000, 3.25));
+    for (const std::string& text : {
+             "\xEF\xBB\xBF" + plain,
+             std::string(
+                 "frame,x,y,z,heading,pitch,roll\r0,1.5,-2e3,3.25,90,-30,0\r1,2.5,0,4,91,-31,0\r"),
+             std::string("frame;x;y;z;heading;pitch;roll\r\n0;1,5;-2e3;3,25;90;-30;0\r\n1;2,5;0;4;"
+                         "91;-31;0\r\n"),
+             std::string(
+                 "frame;x;y;z;heading;pitch;roll\n0;1.5;-2e3;3.25;90;-30;0\n1;2.5;0;4;91;-31;0\n"),
+             std::string("frame\tx\ty\tz\theading\tpitch\troll\n0\t1,5\t-2e3\t3,25\t90\t-30\t0\n"
+                         "1\t2,5\t0\t4\t91\t-31\t0\n"),
+             std::string("\"frame\",\"x\",\"y\",\"z\",\"heading\",\"pitch\",\"roll\"\n"
+                         "\"0\",\"1.5\",\"-2e3\",\" 3.25\",\"90\",\"-30\",\"0\"\n"
+                         " 1 , +2.5,0 ,4,91,-31,0\n\n  \n"),
+         }) {
+        const std::vector<RecordedPlace> places = parse_recorded(text, "flight.csv");
+        ASSERT_EQ(places.size(), expected.size()) << text;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            EXPECT_EQ(places[i].position, expected[i].position) << text;
+            EXPECT_EQ(places[i].angles, expected[i].angles) << text;
+        }
+    }
+}
 TEST(Recorded, names_file_and_line_of_what_is_wrong) {
     const std::string header = "frame,x,y,z,heading,pitch,roll\n";
     const auto message = [&](const std::string& text) -> std::string {
@@ -426,19 +454,35 @@ TEST(Recorded, names_file_and_line_of_what_is_wrong) {
     EXPECT_THAT(message(""), HasSubstr("flight.csv:1: the recorded flight has no frames"));
     EXPECT_THAT(message(header), HasSubstr("no frames"));
     EXPECT_THAT(message("x,y\n"), HasSubstr("flight.csv:1: the header is \"x,y\""));
-    EXPECT_THAT(message("\xEF\xBB\xBF" + header), HasSubstr("flight.csv:1: the header is"));
+    EXPECT_THAT(message("0,1,2,3,4,5,6\n"),
+                HasSubstr("flight.csv:1: the header is missing, the first line is the row"));
+    EXPECT_THAT(message(std::string("\xFF\xFE"
+                                    "f\0r\0",
+                                    6)),
+                HasSubstr("flight.csv:1: the file is UTF-16"));
     EXPECT_THAT(message(header + "0,1,2,3,4,5,6\n1,2,3\n"),
                 HasSubstr("flight.csv:3: the row \"1,2,3\" has 3 fields"));
     EXPECT_THAT(message(header + "0,1,2,3,4,5,6,7\n"), HasSubstr("has 8 fields"));
-    EXPECT_THAT(message(header + "0,1,2,3,4,5,6\n\n"), HasSubstr("flight.csv:3: the row \"\""));
+    EXPECT_EQ(message(header + "0,1,2,3,4,5,6\n\n \n"), "accepted");
+    EXPECT_THAT(message(header + "0,1,2,3,4,5,6\n\n\n1,1,2,3,4,5,6\n"),
+                HasSubstr("flight.csv:3: an empty line between the rows"));
+    EXPECT_THAT(message(header + "0,1,5,2,3,4,5,6\n"), HasSubstr("decimal commas need semicolons"));
     EXPECT_THAT(message(header + "0,1,2,3,4,5,6\n2,1,2,3,4,5,6\n"),
                 HasSubstr("flight.csv:3: frame is \"2\" where 1 was expected"));
-    for (const char* bad : {"nan", "inf", "-inf", "", " 1", "1 ", "1e999", "0x10", "1;", "+1"}) {
+    for (const char* bad :
+         {"nan", "inf", "-inf", "", " ", "1 2", "1e999", "0x10", "1;", "+-1", "++1", "+"}) {
         EXPECT_THAT(message(header + "0,1," + bad + ",3,4,5,6\n"),
                     HasSubstr("flight.csv:2: y is \""))
             << bad;
     }
     EXPECT_THAT(message(header + "0,1e10,2,3,4,5,6\n"), HasSubstr("out of range"));
+    EXPECT_THAT(
+        message("frame;x;y;z;heading;pitch;roll\n0;1,5;2;3;4;5;6\n1;1,5;1.234;3;4;5;6\n"),
+        HasSubstr(
+            "flight.csv:3: y is \"1.234\", with a '.' where line 2 has ',' as the decimal mark"));
+    EXPECT_THAT(message("frame;x;y;z;heading;pitch;roll\n0;1.234,5;2;3;4;5;6\n"),
+                HasSubstr("flight.csv:2: x is \"1.234,5\", with a ','"));
+    EXPECT_THAT(message(header + "0,\"1,5\",2,3,4,5,6\n"), HasSubstr("flight.csv:2: x is \"1,5\""));
     const std::string binary = message(header + std::string("\0\x01\xff\n", 4));
     EXPECT_EQ(binary.find('\n'), std::string::npos);
     EXPECT_THAT(binary, HasSubstr("\\xff"));

@@ -157,6 +157,11 @@ public:
                                         : std::vector<int>{1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1,
                                                            3072, 0, 1, 32611});
     }
+    /// A mask in a second directory: a byte a sample, 0 where there is no data.
+    Tiff& mask(std::string bytes) {
+        mask_ = std::move(bytes);
+        return *this;
+    }
     [[nodiscard]] std::string str() const {
         std::string strip = samples_;
         if (strip.size() % 2 != 0) strip += '\0';
@@ -179,7 +184,9 @@ public:
                 tail += data;
             }
         }
-        return file.number(0, 4).text(tail).str();
+        std::string whole = file.number(0, 4).text(tail).str();
+        if (!mask_.empty()) append_mask(whole, directory + 2 + entries_.size() * 12);
+        return whole;
     }
 
 private:
@@ -196,7 +203,39 @@ private:
         entries_.insert(place, {tag, type, count, std::move(data)});
         return *this;
     }
+    /// `link`: where the offset of the next directory stands.
+    void append_mask(std::string& file, std::uint64_t link) const {
+        const std::uint64_t strip = file.size();
+        file += mask_;
+        if (file.size() % 2 != 0) file += '\0';
+        file.replace(link, 4, Bytes(false).number(file.size(), 4).str());
+        Bytes directory(false);
+        directory.number(11, 2);
+        const auto size = [this](int tag) {
+            for (const Entry& entry : entries_) {
+                if (entry.tag == tag) return entry.data;
+            }
+            return std::string(4, '\0');
+        };
+        const auto value = [&](int tag, std::uint64_t number) {
+            directory.number(std::uint64_t(tag), 2).number(4, 2).number(1, 4).number(number, 4);
+        };
+        value(254, 4);  // a mask
+        for (const int tag : {256, 257}) {
+            directory.number(std::uint64_t(tag), 2).number(4, 2).number(1, 4).text(size(tag));
+        }
+        value(258, 8);
+        value(259, 1);
+        value(262, 4);  // a mask
+        value(273, strip);
+        value(277, 1);
+        directory.number(278, 2).number(4, 2).number(1, 4).text(size(257));
+        value(279, mask_.size());
+        value(339, 1);
+        file += directory.number(0, 4).str();
+    }
     std::string samples_;
+    std::string mask_;
     std::vector<Entry> entries_;
 };
 

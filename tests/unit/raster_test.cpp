@@ -43,8 +43,10 @@ void expect_equal(const Raster& one, const Raster& other) {
     EXPECT_EQ(one.info.spacing, other.info.spacing);
     EXPECT_EQ(one.info.origin, other.info.origin);
     EXPECT_EQ(one.info.void_count, other.info.void_count);
-    EXPECT_EQ(one.kind, other.kind);
-    EXPECT_EQ(one.spacing_assumed, other.spacing_assumed);
+    EXPECT_EQ(one.provenance.kind, other.provenance.kind);
+    EXPECT_EQ(one.provenance.spacing_assumed, other.provenance.spacing_assumed);
+    EXPECT_EQ(one.provenance.reference, other.provenance.reference);
+    EXPECT_EQ(one.provenance.warnings, other.provenance.warnings);
     EXPECT_EQ(one.all_void, other.all_void);
     EXPECT_EQ(bits_of(one.heights), bits_of(other.heights));
 }

@@ -133,6 +133,14 @@ TEST(NastyToml, control_characters_and_long_names_come_back_escaped_and_cut) {
     EXPECT_THAT(refusal("name = \"a\\n\\u001b[31m\"\n"), HasSubstr("a\\x0a\\x1b[31m"));
     EXPECT_THAT(refusal("\"" + std::string(4000, 'k') + "\" = 1\n"),
                 HasSubstr("kkk...\" is not a key"));
+    const std::string valid =
+        "[terrain]\nsynthetic = \"plane\"\n[flight]\nkind = \"orbit\"\n"
+        "centre = [0, 0]\nradius = 9\n[[method]]\nid = \"some\"\n";
+    EXPECT_THAT(refusal(valid + "\"\\u001b[31m\" = []\n"),
+                HasSubstr(":9: [[method]] \"\\x1b[31m\" = []: 0 values"));
+    EXPECT_THAT(refusal(valid + std::string(4000, 'k') + " = []\n"), HasSubstr("kkk...\" = []"));
+    // C1 too steers a terminal.
+    EXPECT_THAT(refusal("[terrain]\nfile = \"a\\u009b31m\"\n"), HasSubstr("control characters"));
 }
 
 TEST(NastyToml, byte_order_mark_and_crlf_are_accepted_as_toml_has_them) {

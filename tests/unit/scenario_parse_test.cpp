@@ -10,6 +10,7 @@
 #include <string>
 
 #include "api/error.h"
+#include "cli/run_lodbench.h"
 
 using namespace lodbench;
 using namespace lodbench::scenario;
@@ -212,7 +213,7 @@ TEST(Scenario, wrong_types_name_line_value_and_what_belongs) {
         {"rate_hz = \"fast\"\n", "[flight] rate_hz = \"fast\": text where a number from"},
         {"warmup_frames = 2.5\n", "[flight] warmup_frames = 2.5: a number where a whole number"},
         {"relative = 1\n", "[flight] relative = 1: a whole number is not true or false"},
-        {"[camera]\nnear = [1]\n", "[camera] near = an array: an array where a number"},
+        {"[camera]\nnear = [1]\n", "[camera] near = [1]: an array where a number"},
         {"[camera]\nnear = 2020-01-01\n", "a date or time where a number"},
         {"[measure]\nshots = 3\n", "[measure] shots = 3: a whole number where an array"},
         {"[measure]\nshots = [0, \"x\"]\n",
@@ -246,7 +247,7 @@ TEST(Scenario, values_out_of_range_name_the_range) {
         {"[run]\nseed = -1\n", "seed = -1: out of range"},
         {"[run]\nrepetitions = 0\n", "repetitions = 0: out of range"},
         {"[[method]]\nid = \"PGM!\"\n", "id = \"PGM!\": not the id of a method"},
-        {"[[method]]\nid = \"pgm\"\ntau = []\n", "tau = an array: 0 values"},
+        {"[[method]]\nid = \"pgm\"\ntau = []\n", "tau = []: 0 values"},
         {"[[method]]\nid = \"pgm\"\ntau = [1, 1]\n", "\"1\" is there twice"},
         {"[[method]]\nid = \"pgm\"\ntau = nan\n", "tau = nan: not a finite number"},
         {"[[method]]\nid = \"pgm\"\ntau = [[1]]\n",
@@ -319,6 +320,31 @@ TEST(Scenario, flight_says_what_its_kind_lacks) {
                 HasSubstr("margin = 6: out of range"));
     EXPECT_THAT(refusal(flight("kind = \"recorded\"\nfile = \"none.csv\"\n")),
                 StartsWith("flights/least.toml:5: [flight] file = \"none.csv\": no such file"));
+}
+
+TEST(Scenario, recorded_flight_has_all_frames_of_its_file_unless_told) {
+    const test::ScratchFolder folder;
+    std::ofstream rows(folder.path() / "seven.csv");
+    rows << "frame,x,y,z,heading,pitch,roll\n";
+    for (int i = 0; i < 7; ++i) rows << i << ",0,0,100,0,-30,0\n";
+    rows.close();
+    const auto frames = [&](const std::string& keys) {
+        return parse_scenario(flight("kind = \"recorded\"\nfile = \"seven.csv\"\n" + keys),
+                              folder.path() / "some.toml")
+            .frames;
+    };
+    EXPECT_EQ(frames(""), 7);
+    EXPECT_EQ(frames("frames = 3\n"), 3);
+    EXPECT_EQ(frames("[measure]\nshots = [6]\n"), 7);
+    EXPECT_THROW((void)frames("[measure]\nshots = [7]\n"), InputError);
+}
+
+TEST(Scenario, line_that_stands_still_is_refused_by_its_value_and_what_may) {
+    EXPECT_THAT(
+        refusal(flight("kind = \"line\"\nstart = [0.5, 0.5, 1000]\nend = [0.5, 0.5, 1000]\n")),
+        AllOf(
+            StartsWith("flights/least.toml:6: [flight] end = [0.5, 0.5, 1000]: the same as start"),
+            HasSubstr("turns = 0")));
 }
 
 TEST(Scenario, name_comes_from_the_file_unless_it_cannot) {

@@ -21,7 +21,7 @@ TEST(ExportRaw, reads_back_to_the_bit) {
     info.spacing = {63.968827647644254, 1.0 / 3};
     info.origin = {-9365036.367615119, 1e-300};
     info.void_count = 4;
-    const HeightField field(info, {0.1F, 0.0F, 1e-42F, 3.4e38F, -8848.86F, 1.0F / 3});
+    const HeightField field(info, {0.1F, 0.0F, 1e-42F, 9.9e6F, -8848.86F, 1.0F / 3});
     write_raw(field, folder.path() / "a.raw");
 
     TerrainSource source;

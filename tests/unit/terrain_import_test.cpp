@@ -94,8 +94,12 @@ TEST_F(ImageImport, source_goes_before_the_sidecar) {
 }
 
 TEST_F(ImageImport, colours_and_stretched_bits_are_refused) {
-    EXPECT_EQ(refusal(source("a.png", png(2, 2, 8, 2, {"abcdef", "abcdef"}))),
-              "a.png: 3 channels; a height map has one, convert it to grey without alpha");
+    // Terrain-RGB turned to grey would be read, and be no terrain.
+    const std::string text = refusal(source("a.png", png(2, 2, 8, 2, {"abcdef", "abcdef"})));
+    EXPECT_EQ(text.find("a.png: 3 channels; a height map has one: heights coded in colours, as "
+                        "terrain-RGB and terrarium tiles hold them, must be decoded first"),
+              0U)
+        << text;
     EXPECT_EQ(refusal(source("b.png", png(2, 2, 4, 0, {"\x12", "\x34"}))),
               "b.png: 4 bits a sample; convert it to 8 or 16");
 }

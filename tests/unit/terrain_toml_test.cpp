@@ -40,6 +40,18 @@ TEST(TomlFile, names_the_line_of_what_is_not_toml) {
     EXPECT_EQ(message_of("a = \"\xff\"\n").find("s.toml:1: not TOML: "), 0U);
 }
 
+TEST(TomlFile, quotes_what_is_not_toml_as_plain_text) {
+    // The parser's own words hold the bytes as they are.
+    EXPECT_EQ(message_of("a = fals\x7f\n"),
+              "s.toml:1: not TOML: Error while parsing boolean: expected 'false', saw 'fals\\x7f'");
+    const std::string steering =
+        message_of("a = tru\xc2\x9b\n");  // C1: begins a terminal's command
+    EXPECT_EQ(steering.find('\x9b'), std::string::npos) << steering;
+    EXPECT_NE(steering.find("s.toml:1: not TOML: "), std::string::npos) << steering;
+    const std::string key(4000, 'k');
+    EXPECT_LT(message_of(key + " = 1\n" + key + " = 2\n").size(), 400U);
+}
+
 TEST(TomlFile, refuses_a_dotted_key_of_80_kilobytes_by_its_line_length) {
     EXPECT_EQ(message_of("x = 1\n" + repeated("a.", 40000) + "a = 1\n"),
               "s.toml:2: a line of 80005 bytes, the longest that is read has 4096; break it up");

@@ -19,6 +19,7 @@ using terrain::Upsampling;
 class FieldRows final : public terrain::TerrainRows {
 public:
     explicit FieldRows(const HeightField& field) : field_(field) { info_ = field.info(); }
+    [[nodiscard]] terrain::Provenance provenance() const override { return {}; }
     void next(std::span<float> heights) override {
         ASSERT_LT(row_, info_.rows) << "asked for more rows than there are";
         field_.read({row_++, 0, 1, info_.columns}, heights);

@@ -19,7 +19,7 @@ std::string definition(const char* term, const Json::Value& value) {
     return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", term, escape(value_text(value)));
 }
 
-/// Each warning once, with the number of cells that raise it.
+/// Each warning once; those that the run does not raise with the number of cells that do.
 std::vector<std::string> warnings_of(const ResultFolder& folder) {
     std::vector<std::string> texts = folder.warnings;
     for (const Json::Value& warning : folder.run["warnings"]) {
@@ -32,6 +32,7 @@ std::vector<std::string> warnings_of(const ResultFolder& folder) {
         }
     }
     for (const auto& [warning, names] : cells) {
+        if (std::ranges::find(texts, warning) != texts.end()) continue;
         texts.push_back(names.size() == 1 ? fmt::format("{} ({})", warning, names.front())
                                           : fmt::format("{} ({} and {} more)", warning,
                                                         names.front(), names.size() - 1));

@@ -6,44 +6,28 @@
 #include <fmt/format.h>
 
 #include "api/error.h"
+#include "terrain/ascii_grid_check.h"
+#include "terrain/colour_heights.h"
+#include "terrain/readers/gdal_place.h"
+#include "terrain/world_file.h"
 
-#include <cpl_error.h>
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
-#include <ogr_spatialref.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <utility>
 
 namespace lodbench::terrain {
 namespace {
 
-/// While it lives, GDAL's words on this thread come here instead of stderr.
-class ErrorText {
-public:
-    ErrorText() { CPLPushErrorHandlerEx(&ErrorText::keep, this); }
-    ~ErrorText() { CPLPopErrorHandler(); }
-    ErrorText(const ErrorText&) = delete;
-    ErrorText& operator=(const ErrorText&) = delete;
-
-    /// The last failure, else the last warning, on one line.
-    [[nodiscard]] std::string text() const {
-        std::string line = !failure_.empty() ? failure_ : warning_;
-        for (char& c : line) {
-            if (c == '\n' || c == '\r') c = ' ';
-        }
-        return line.empty() ? "GDAL says nothing more" : "GDAL: " + line;
-    }
-
-private:
-    static void CPL_STDCALL keep(CPLErr level, CPLErrorNum /*number*/, const char* message) {
-        auto& self = *static_cast<ErrorText*>(CPLGetErrorHandlerUserData());
-        (level >= CE_Failure ? self.failure_ : self.warning_) = message;
-    }
-    std::string failure_, warning_;
-};
+std::string said(const GdalWords& words) {
+    const std::string last = words.last();
+    return last.empty() ? "GDAL says nothing more" : "GDAL: " + last;
+}
 
 void register_drivers() {
     GDALRegister_GTiff();
@@ -63,80 +47,152 @@ constexpr std::array<const char*, 8> kDrivers = {"GTiff", "AAIGrid", "SRTMHGT", 
 
 /// Metres in one vertical unit; nothing where the unit is unknown.
 std::optional<double> metres_per_unit(const std::string& unit) {
-    static constexpr std::array<std::pair<const char*, double>, 15> kUnits = {{
-        {"", 1},
-        {"m", 1},
-        {"metre", 1},
-        {"metres", 1},
-        {"meter", 1},
-        {"meters", 1},
-        {"ft", 0.3048},
-        {"foot", 0.3048},
-        {"feet", 0.3048},
-        {"us survey foot", 1200.0 / 3937.0},
-        {"us survey feet", 1200.0 / 3937.0},
-        {"ftus", 1200.0 / 3937.0},
-        {"us-ft", 1200.0 / 3937.0},
-        {"cm", 0.01},
-        {"dm", 0.1},
+    struct Unit {
+        double metres;
+        std::vector<const char*> names;
+    };
+    static const std::array<Unit, 7> kUnits = {{
+        {1, {"", "m", "metre", "metres", "meter", "meters"}},
+        {0.3048,
+         {"ft", "foot", "feet", "international foot", "international feet", "international_feet",
+          "foot (international)"}},
+        {1200.0 / 3937.0,
+         {"us survey foot", "us survey feet", "u.s. survey foot", "us_survey_foot", "survey foot",
+          "survey feet", "survey_foot", "survey_feet", "foot_us", "ft_us", "ftus", "us-ft"}},
+        {0.1, {"dm", "decimetre", "decimetres", "decimeter", "decimeters"}},
+        {0.01, {"cm", "centimetre", "centimetres", "centimeter", "centimeters"}},
+        {0.001, {"mm", "millimetre", "millimetres", "millimeter", "millimeters"}},
+        {1000, {"km", "kilometre", "kilometres", "kilometer", "kilometers"}},
     }};
-    for (const auto& [name, metres] : kUnits) {
-        if (EQUAL(unit.c_str(), name)) return metres;
+    for (const auto& [metres, names] : kUnits) {
+        for (const char* name : names) {
+            if (EQUAL(unit.c_str(), name)) return metres;
+        }
     }
     return std::nullopt;
-}
-
-/// Metres per radian of longitude (x) and latitude (y) at a latitude; see open_with_gdal.
-glm::dvec2 metres_per_radian(double latitude, const OGRSpatialReference& reference) {
-    const double axis = reference.GetSemiMajor();
-    const double inverse_flattening = reference.GetInvFlattening();
-    const double flattening = inverse_flattening > 0 ? 1 / inverse_flattening : 0;  // 0: a sphere
-    const double e2 = flattening * (2 - flattening);
-    const double sine = std::sin(latitude);
-    const double w2 = 1 - e2 * sine * sine;
-    return {axis * std::cos(latitude) / std::sqrt(w2), axis * (1 - e2) / (w2 * std::sqrt(w2))};
 }
 
 class GdalReader final : public RasterReader {
 public:
     explicit GdalReader(const std::filesystem::path& file)
         : file_(std::filesystem::absolute(file)) {
-        const ErrorText errors;
-        const std::string path = file_.string();
-        if (path.starts_with("/vsi")) refuse("a virtual path of GDAL; give a file on disk");
-        register_drivers();
-        dataset_.reset(
-            GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers.data()));
-        if (!dataset_)
-            refuse(fmt::format("is no elevation model that can be read; {}", errors.text()));
-        if (dataset_->GetRasterCount() != 1) {
-            refuse(
-                fmt::format("{} bands; an elevation model has one (gdal_translate -b 1 takes one "
-                            "out)",
-                            dataset_->GetRasterCount()));
+        const GdalWords words;
+        if (file_.string().starts_with("/vsi")) {
+            refuse("a virtual path of GDAL; give a file on disk");
         }
-        band_ = dataset_->GetRasterBand(1);
+        register_drivers();
+        open(words);
+        choose_band();
         description_.rows = dataset_->GetRasterYSize();
         description_.columns = dataset_->GetRasterXSize();
         check_raster_size(file_, description_.rows, description_.columns);
         read_type();
+        read_mask();
         read_units();
-        read_georeference();
+        south_up_ = read_place(*dataset_, file_, words, description_);
     }
 
     void read_row(int row, std::span<double> values) override {
-        const ErrorText errors;
+        const GdalWords words;
         const int file_row = south_up_ ? description_.rows - 1 - row : row;
-        if (band_->RasterIO(GF_Read, 0, file_row, description_.columns, 1, values.data(),
-                            description_.columns, 1, GDT_Float64, 0, 0, nullptr) != CE_None) {
-            refuse(fmt::format("row {} cannot be read, the file may be truncated; {}", row,
-                               errors.text()));
+        const auto read = [&](GDALRasterBand* band, void* to, GDALDataType type) {
+            if (band->RasterIO(GF_Read, 0, file_row, description_.columns, 1, to,
+                               description_.columns, 1, type, 0, 0, nullptr) != CE_None) {
+                refuse(fmt::format("row {} cannot be read, the file may be truncated; {}", row,
+                                   said(words)));
+            }
+        };
+        read(band_, values.data(), GDT_Float64);
+        if (signed_bytes_) {
+            for (double& value : values) value -= value > 127 ? 256 : 0;
+        }
+        if (!description_.masked) return;
+        valid_.resize(values.size());
+        read(band_->GetMaskBand(), valid_.data(), GDT_Byte);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (valid_[i] == 0) values[i] = std::numeric_limits<double>::quiet_NaN();
         }
     }
 
 private:
     [[noreturn]] void refuse(const std::string& what) const {
         throw InputError(fmt::format("{}: {}", file_.string(), what));
+    }
+
+    [[nodiscard]] bool named(const char* extension) const {
+        return EQUAL(file_.extension().c_str(), extension);
+    }
+
+    void open(const GdalWords& words) {
+        AsciiGrid grid;
+        if (named(".asc")) grid = check_ascii_grid(file_);
+        // Left to itself the driver takes the first 100 KB for all.
+        const std::array<const char*, 2> as_doubles = {"DATATYPE=Float64", nullptr};
+        dataset_.reset(GDALDataset::Open(file_.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
+                                         kDrivers.data(),
+                                         grid.fractional ? as_doubles.data() : nullptr));
+        if (!dataset_) {
+            refuse(fmt::format("is no elevation model that can be read; {}", why_not(words)));
+        }
+        if (grid.recognised && (dataset_->GetRasterYSize() != grid.rows ||
+                                dataset_->GetRasterXSize() != grid.columns)) {
+            refuse(fmt::format("{} rows x {} columns in its header, {} x {} to GDAL; write it anew",
+                               grid.rows, grid.columns, dataset_->GetRasterYSize(),
+                               dataset_->GetRasterXSize()));
+        }
+    }
+
+    [[nodiscard]] std::string why_not(const GdalWords& words) const {
+        if (named(".hgt")) return why_no_tile();
+        if ((named(".bil") || named(".flt")) && !find_beside(file_, ".hdr")) {
+            return fmt::format("its header {} does not lie beside it",
+                               file_.filename().replace_extension(".hdr").string());
+        }
+        if (named(".asc") && words.last().empty()) {
+            return "an Arc ASCII grid begins with ncols and nrows, and this file does not";
+        }
+        return said(words);
+    }
+
+    /// SRTM tiles have no header: GDAL knows them by their sizes and their names.
+    [[nodiscard]] std::string why_no_tile() const {
+        static constexpr std::array<std::uintmax_t, 4> kSides = {1201, 3601, 7201, 6001};
+        const std::uintmax_t bytes = std::filesystem::file_size(file_);
+        const bool sized = std::ranges::any_of(kSides, [bytes](std::uintmax_t side) {
+            return bytes == 2 * side * side || bytes == side * (side + 1);
+        });
+        if (sized) {
+            return "its name must say where it lies: N46W122.hgt is the tile from 46 to 47 degrees "
+                   "north and 122 to 121 west";
+        }
+        return fmt::format(
+            "it has {} bytes, and SRTM tiles have 2884802 (1201 x 1201 samples, 3 seconds apart) "
+            "or "
+            "25934402 (3601 x 3601, 1 second): it is truncated or no such tile, fetch it anew",
+            bytes);
+    }
+
+    void choose_band() {
+        const int count = dataset_->GetRasterCount();
+        if (count < 1) refuse("no bands; an elevation model has one");
+        band_ = dataset_->GetRasterBand(1);
+        const bool alpha =
+            count == 2 && dataset_->GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
+        if (count != 1 && !alpha) {
+            const bool colours = band_->GetColorInterpretation() == GCI_RedBand;
+            refuse(fmt::format("{} bands; an elevation model has one ({})", count,
+                               colours ? kColourHeights : "gdal_translate -b 1 takes one out"));
+        }
+        if (band_->GetColorInterpretation() == GCI_PaletteIndex) {
+            description_.warnings.push_back(
+                "its samples are indices into a table of colours, as in a picture: taken for "
+                "heights");
+        }
+        char** parts = dataset_->GetMetadata("SUBDATASETS");
+        if (const int count_of_parts = CSLCount(parts) / 2; count_of_parts > 1) {
+            description_.warnings.push_back(
+                fmt::format("holds {} rasters; the first is read", count_of_parts));
+        }
     }
 
     void read_type() {
@@ -147,16 +203,40 @@ private:
             refuse(fmt::format("samples of type {}; integers of up to 32 bits and floats are read",
                                GDALGetDataTypeName(type)));
         }
-        description_.float32 = type == GDT_Float32;
+        const char* pixels = band_->GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+        signed_bytes_ = type == GDT_Byte && pixels != nullptr && EQUAL(pixels, "SIGNEDBYTE");
+        if (GDALDataTypeIsInteger(type) != 0) {
+            const bool is_signed = signed_bytes_ || GDALDataTypeIsSigned(type) != 0;
+            const double values = std::exp2(GDALGetDataTypeSizeBits(type));
+            description_.integers =
+                std::pair{is_signed ? -values / 2 : 0.0, (is_signed ? values / 2 : values) - 1};
+        }
         description_.kind = fmt::format("{}, {}, through GDAL", dataset_->GetDriverName(),
-                                        GDALGetDataTypeName(type));
+                                        signed_bytes_ ? "Int8" : GDALGetDataTypeName(type));
         int has_no_data = 0;
         const double no_data = band_->GetNoDataValue(&has_no_data);
         if (has_no_data != 0) description_.no_data = no_data;
     }
 
+    void read_mask() {
+        description_.masked = (band_->GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+        double percent = 100;
+        const int coverage = band_->GetDataCoverageStatus(0, 0, description_.columns,
+                                                          description_.rows, 0, &percent);
+        const bool known = (coverage & GDAL_DATA_COVERAGE_STATUS_UNIMPLEMENTED) == 0;
+        if (known && (coverage & GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0 && !description_.no_data &&
+            !description_.masked) {
+            description_.warnings.push_back(
+                fmt::format("{:.3g} % of its blocks are not in the file, and it names no no-data "
+                            "value: they are "
+                            "read as 0, taken for heights; fetch it anew, or give 0 as no-data",
+                            100 - percent));
+        }
+    }
+
     void read_units() {
         const std::string unit = band_->GetUnitType();
+        description_.vertical_unit_named = !unit.empty();
         const std::optional<double> metres = metres_per_unit(unit);
         if (!metres) {
             description_.unit_hint =
@@ -166,60 +246,12 @@ private:
         description_.vertical_offset = band_->GetOffset() * metres.value_or(1);
     }
 
-    // A geotransform maps (column, row) of pixel corners to (x, y):
-    // x = t0 + column t1 + row t2, y = t3 + column t4 + row t5.
-    void read_georeference() {
-        std::array<double, 6> t{};
-        if (dataset_->GetGeoTransform(t.data()) != CE_None) return;
-        if (t[2] != 0 || t[4] != 0) {
-            refuse(fmt::format(
-                "a rotated geotransform (terms {} and {}); warp it upright with gdalwarp", t[2],
-                t[4]));
-        }
-        if (!(t[1] > 0) || t[5] == 0 || !std::isfinite(t[1]) || !std::isfinite(t[5])) {
-            refuse(fmt::format(
-                "pixels of {} by {}; the width must be positive, the height not zero", t[1], t[5]));
-        }
-        south_up_ = t[5] > 0;
-        const glm::dvec2 pixel(t[1], std::abs(t[5]));
-        const double south_row = south_up_ ? 0.5 : description_.rows - 0.5;
-        const glm::dvec2 corner(t[0] + 0.5 * t[1], t[3] + south_row * t[5]);
-        const double centre_y = corner.y + 0.5 * (description_.rows - 1) * pixel.y;
-
-        const OGRSpatialReference* reference = dataset_->GetSpatialRef();
-        if (reference == nullptr && looks_like_degrees(corner, pixel)) {
-            description_.spacing_hint = fmt::format(
-                "no coordinate system, and pixels of {} x {} look like degrees", pixel.x, pixel.y);
-            return;
-        }
-        glm::dvec2 metres(1);
-        if (reference != nullptr && reference->IsGeographic() != 0) {
-            const double radians = reference->GetAngularUnits(nullptr);
-            const double latitude = centre_y * radians;
-            if (!(std::abs(latitude) < 0.5 * std::numbers::pi)) {
-                refuse(fmt::format("centre latitude of {} degrees; it must lie between the poles",
-                                   latitude * 180 / std::numbers::pi));
-            }
-            metres = radians * metres_per_radian(latitude, *reference);
-        } else if (reference != nullptr) {
-            metres = glm::dvec2(reference->GetLinearUnits(nullptr));
-        }
-        description_.spacing = pixel * metres;
-        description_.origin = corner * metres;
-    }
-
-    /// An .asc without .prj does not say what its numbers are: a thousandth of something, within
-    /// the range of longitudes and latitudes, is taken for neither.
-    [[nodiscard]] bool looks_like_degrees(glm::dvec2 corner, glm::dvec2 pixel) const {
-        const glm::dvec2 far = corner + pixel * glm::dvec2(description_.columns, description_.rows);
-        return pixel.x < 0.02 && pixel.y < 0.02 && std::abs(corner.x) <= 360 &&
-               std::abs(far.x) <= 360 && std::abs(corner.y) <= 90 && std::abs(far.y) <= 90.5;
-    }
-
     std::filesystem::path file_;
     GDALDatasetUniquePtr dataset_;
     GDALRasterBand* band_ = nullptr;
     bool south_up_ = false;
+    bool signed_bytes_ = false;        ///< GDAL has no type for them before 3.7
+    std::vector<std::uint8_t> valid_;  ///< of the row: 0 where the mask rules out
 };
 
 }  // namespace

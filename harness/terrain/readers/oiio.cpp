@@ -7,13 +7,16 @@
 #include <fmt/format.h>
 
 #include "api/error.h"
+#include "terrain/colour_heights.h"
 
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -35,13 +38,15 @@ const char* format_of(const std::filesystem::path& file) {
     return extension == ".png" ? "png" : "tiff";
 }
 
+/// `channels` are 1, or 2 where the second is alpha: NaN where that is 0.
 template <typename T>
-void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first,
+void copy_as_double(const std::vector<std::byte>& bytes, std::size_t first, int channels,
                     std::span<double> values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
-        T sample;
-        std::memcpy(&sample, bytes.data() + (first + i) * sizeof(T), sizeof(T));
-        values[i] = sample;
+        std::array<T, 2> pixel{T(0), T(1)};
+        const std::size_t size = sizeof(T) * std::size_t(channels);
+        std::memcpy(pixel.data(), bytes.data() + (first + i) * size, size);
+        values[i] = pixel[1] == T(0) ? std::numeric_limits<double>::quiet_NaN() : double(pixel[0]);
     }
 }
 
@@ -63,14 +68,16 @@ public:
                                                file.string(), format_of(file),
                                                one_line(OIIO::geterror())));
         }
-        if (!input_->open(file.string(), spec_)) {
+        OIIO::ImageSpec wish;
+        wish.attribute("oiio:UnassociatedAlpha", 1);  // else samples are multiplied by alpha
+        if (!input_->open(file.string(), spec_, wish)) {
             refuse(fmt::format("is no {} image that can be read; {}", format_of(file),
                                one_line(input_->geterror())));
         }
-        if (spec_.nchannels != 1) {
-            refuse(
-                fmt::format("{} channels; a height map has one, convert it to grey without alpha",
-                            spec_.nchannels));
+        description_.masked = spec_.nchannels == 2 && spec_.alpha_channel == 1;
+        if (spec_.nchannels != 1 && !description_.masked) {
+            refuse(fmt::format("{} channels; a height map has one: {}", spec_.nchannels,
+                               kColourHeights));
         }
         if (spec_.depth > 1) refuse("a volume; a height map is flat");
         check_size(spec_.height, spec_.width);
@@ -85,17 +92,23 @@ public:
     void read_row(int row, std::span<double> values) override {
         if (row >= strip_end_) read_strip(row);
         const std::size_t first = std::size_t(row - strip_begin_) * std::size_t(spec_.width);
+        const int channels = spec_.nchannels;
         switch (type_.basetype) {
-            case OIIO::TypeDesc::UINT8: return copy_as_double<std::uint8_t>(strip_, first, values);
-            case OIIO::TypeDesc::INT8: return copy_as_double<std::int8_t>(strip_, first, values);
+            case OIIO::TypeDesc::UINT8:
+                return copy_as_double<std::uint8_t>(strip_, first, channels, values);
+            case OIIO::TypeDesc::INT8:
+                return copy_as_double<std::int8_t>(strip_, first, channels, values);
             case OIIO::TypeDesc::UINT16:
-                return copy_as_double<std::uint16_t>(strip_, first, values);
-            case OIIO::TypeDesc::INT16: return copy_as_double<std::int16_t>(strip_, first, values);
+                return copy_as_double<std::uint16_t>(strip_, first, channels, values);
+            case OIIO::TypeDesc::INT16:
+                return copy_as_double<std::int16_t>(strip_, first, channels, values);
             case OIIO::TypeDesc::UINT32:
-                return copy_as_double<std::uint32_t>(strip_, first, values);
-            case OIIO::TypeDesc::INT32: return copy_as_double<std::int32_t>(strip_, first, values);
-            case OIIO::TypeDesc::FLOAT: return copy_as_double<float>(strip_, first, values);
-            default: return copy_as_double<double>(strip_, first, values);
+                return copy_as_double<std::uint32_t>(strip_, first, channels, values);
+            case OIIO::TypeDesc::INT32:
+                return copy_as_double<std::int32_t>(strip_, first, channels, values);
+            case OIIO::TypeDesc::FLOAT:
+                return copy_as_double<float>(strip_, first, channels, values);
+            default: return copy_as_double<double>(strip_, first, channels, values);
         }
     }
 
@@ -127,7 +140,10 @@ private:
             refuse(fmt::format("samples of type {}; integers of up to 32 bits and floats are read",
                                spec_.format.c_str()));
         }
-        description_.float32 = type_.basetype == OIIO::TypeDesc::FLOAT;
+        if (type_.is_floating_point()) return;
+        const double values = std::exp2(8 * type_.size());
+        description_.integers =
+            type_.is_signed() ? std::pair{-values / 2, values / 2 - 1} : std::pair{0.0, values - 1};
     }
 
     /// OpenImageIO stretches samples of fewer bits than their type to the type's full range, and
@@ -149,13 +165,14 @@ private:
         strip_begin_ = row - row % height;
         strip_end_ = std::min(strip_begin_ + height, spec_.height);
         strip_.resize(std::size_t(strip_end_ - strip_begin_) * std::size_t(spec_.width) *
-                      type_.size());
+                      std::size_t(spec_.nchannels) * type_.size());
         const int top = spec_.y + strip_begin_;
         const int bottom = spec_.y + strip_end_;
         const bool read =
             tiled ? input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, top, bottom, spec_.z,
-                                       spec_.z + 1, 0, 1, type_, strip_.data())
-                  : input_->read_scanlines(0, 0, top, bottom, spec_.z, 0, 1, type_, strip_.data());
+                                       spec_.z + 1, 0, spec_.nchannels, type_, strip_.data())
+                  : input_->read_scanlines(0, 0, top, bottom, spec_.z, 0, spec_.nchannels, type_,
+                                           strip_.data());
         if (!read) {
             refuse(fmt::format("rows from {} cannot be read, the file may be truncated; {}",
                                strip_begin_, one_line(input_->geterror())));
