@@ -126,7 +126,8 @@ private:
     void open(const GdalWords& words) {
         AsciiGrid grid;
         if (named(".asc")) grid = check_ascii_grid(file_);
-        // Left to itself the driver takes the first 100 KB for all.
+        // Left to itself the driver reads integers where no cell has a decimal point, and fails at
+        // a nan among them; else it reads float32.
         const std::array<const char*, 2> as_doubles = {"DATATYPE=Float64", nullptr};
         dataset_.reset(GDALDataset::Open(file_.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
                                          kDrivers.data(),
