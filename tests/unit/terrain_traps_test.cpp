@@ -507,7 +507,8 @@ TEST_F(ElevationTraps, cells_of_an_ascii_grid_keep_their_value) {
     // GDAL's driver fails at a nan among integers, and reads the rest as float32.
     EXPECT_EQ(read("1 nan 3\n4 5 6\n")[1], 3.0F);
     EXPECT_EQ(read("1 2 3\n4 5 6.75\n")[5], 6.75F);
-    TerrainSource given = source("b.asc", kHead + "1 2 3\n4 5 16777217.5\n");
+    TerrainSource given =
+        source("b.asc", kHead + "16777211 16777212 16777213\n16777214 16777215 16777217.5\n");
     given.vertical_offset = -16777210;
     EXPECT_EQ(load_terrain(given)->samples()[5], 7.5F);
     given = source("c.asc", kHead + "1 2 3\n4 5 3000000000\n");
