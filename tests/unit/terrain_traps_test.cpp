@@ -299,6 +299,20 @@ TEST_F(ElevationTraps, heights_in_the_feet_of_a_compound_system_are_metres) {
     EXPECT_NEAR(load("a.tif", tiff.str()).field->info().max_height, 1000 * 1200.0 / 3937, 1e-4);
 }
 
+TEST_F(ElevationTraps, depths_need_a_scale_that_turns_them) {
+    Tiff tiff(2, 2, 16, 2, packed16({1000, 2, 3, 4}, false));
+    tiff.doubles(33550, {10, 10, 0}).doubles(33922, {0, 0, 0, 500000, 5200000, 0});
+    // UTM 10 N with MSL depth, EPSG:5715.
+    tiff.shorts(34735,
+                {1, 1, 0, 4, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32610, 4096, 0, 1, 5715});
+    TerrainSource given = source("a.tif", tiff.str());
+    EXPECT_EQ(refusal(given),
+              "a.tif: its heights count downwards, as depths, which a negative scale turns; give "
+              "the vertical scale (metres per unit)");
+    given.vertical_scale = -1;
+    EXPECT_EQ(load_terrain(given)->info().min_height, -1000.0F);
+}
+
 TEST_F(ElevationTraps, samples_of_signed_bytes_are_signed) {
     const LoadedTerrain loaded =
         load("a.tif", Tiff(2, 2, 8, 2, "\xfb\x06\x07\x80").place(10, 0, 0, false).str());
