@@ -40,6 +40,8 @@ void register_drivers() {
     // Of the blocks that it keeps: rows are asked for in order, and a terrain larger than memory is
     // passed over in little of it. By default it takes a twentieth of all there is.
     GDALSetCacheMax64(GIntBig(256) << 20);
+    // Of GeoTIFF 1.0 too, what the heights are: by default only 1.1 tells.
+    CPLSetConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
 }
 
 constexpr std::array<const char*, 8> kDrivers = {"GTiff", "AAIGrid", "SRTMHGT", "USGSDEM",
