@@ -1,6 +1,6 @@
 #pragma once
-// What GDAL does not check of an Arc ASCII grid (.asc). It takes a word for 0, an indented header
-// line for cells, and cells for integers where the first 100 KB hold no decimal point.
+// What GDAL does not check of an Arc ASCII grid (.asc). It takes a word for 0 and an indented
+// header line for cells, and cannot read integers with a nan among them.
 
 #include <cstdint>
 #include <filesystem>

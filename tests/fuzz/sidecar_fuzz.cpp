@@ -77,7 +77,8 @@ void use_as_sidecar(std::string_view text) {
     terrain::TerrainSource source;
     source.file = raster;
     try {
-        for (const float height : terrain::load_terrain(source)->samples()) {
+        const auto field = terrain::load_terrain(source);
+        for (const float height : field->samples()) {
             require(std::isfinite(height), "finite heights");
         }
     } catch (const InputError&) {

@@ -40,6 +40,8 @@ void register_drivers() {
     // Of the blocks that it keeps: rows are asked for in order, and a terrain larger than memory is
     // passed over in little of it. By default it takes a twentieth of all there is.
     GDALSetCacheMax64(GIntBig(256) << 20);
+    // Of GeoTIFF 1.0 too, what the heights are: by default only 1.1 tells.
+    CPLSetConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
 }
 
 constexpr std::array<const char*, 8> kDrivers = {"GTiff", "AAIGrid", "SRTMHGT", "USGSDEM",
@@ -126,7 +128,8 @@ private:
     void open(const GdalWords& words) {
         AsciiGrid grid;
         if (named(".asc")) grid = check_ascii_grid(file_);
-        // Left to itself the driver takes the first 100 KB for all.
+        // Left to itself the driver reads integers where no cell has a decimal point, and fails at
+        // a nan among them; else it reads float32.
         const std::array<const char*, 2> as_doubles = {"DATATYPE=Float64", nullptr};
         dataset_.reset(GDALDataset::Open(file_.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
                                          kDrivers.data(),
