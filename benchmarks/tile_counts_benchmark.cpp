@@ -95,10 +95,11 @@ void print_counts(const Terrain& terrain, const TileCatalogue& catalogue,
 }
 
 /// Sections 1 and 4: "the radius of nested ball will be very big"; 4.1: the cuboid is "much
-/// smaller". Tiles with relief, padding left out.
+/// smaller". Tiles with relief; those that the terrain's edge cuts apart, since the middle of their
+/// ground is not where their children's meet.
 void print_volumes(const TileCatalogue& catalogue) {
     const auto spheres = tile_quadtree::nested_spheres(catalogue);
-    double most_nested = 0, least = 1e300, most = 0;
+    double whole_nested = 0, cut_nested = 0, least = 1e300, most = 0;
     tile_quadtree::for_each_tile(catalogue.pyramid(), [&](const TileId& tile) {
         const common::Box box = catalogue.box(tile);
         const glm::dvec3 size = box.high - box.low;
@@ -106,14 +107,19 @@ void print_volumes(const TileCatalogue& catalogue) {
         const double radius = double(spheres[catalogue.index(tile)].radius);
         const double share =
             size.x * size.y * size.z / (4.0 / 3 * std::numbers::pi * radius * radius * radius);
-        most_nested = std::max(most_nested, radius / (0.5 * glm::length(size)));
+        const tile_quadtree::SampleBox samples = catalogue.samples(tile);
+        const int cells = kTileCells << tile.level;
+        const bool cut = samples.last_row - samples.first_row < cells ||
+                         samples.last_column - samples.first_column < cells;
+        double& nested = cut ? cut_nested : whole_nested;
+        nested = std::max(nested, radius / (0.5 * glm::length(size)));
         least = std::min(least, share);
         most = std::max(most, share);
     });
     fmt::print(
-        "nested radius over half the box's diagonal: at most {:.4f}; cuboid's volume over the "
-        "sphere's: {:.2f} to {:.1f} %\n",
-        most_nested, 100 * least, 100 * most);
+        "nested radius over half the box's diagonal: at most {:.4f}, of tiles that the edge cuts "
+        "{:.4f}; cuboid's volume over the sphere's: {:.2f} to {:.1f} %\n",
+        whole_nested, cut_nested, 100 * least, 100 * most);
 }
 
 /// Section 3.3: how far apart in a file the tiles lie that a flight reads one after another, coarse
@@ -122,7 +128,7 @@ void print_places(const TileCatalogue& catalogue, const TileMetric& metric,
                   const std::vector<Camera>& cameras) {
     const auto& pyramid = catalogue.pyramid();
     std::vector<bool> read(pyramid.count(), false);
-    double in_rows = 0, in_z_order = 0;
+    double in_rows = 0, in_z_order = 0, next_in_rows = 0, next_in_z_order = 0;
     std::size_t reads = 0;
     double row_place = 0, z_place = 0;
     for (const Camera& camera : cameras) {
@@ -145,15 +151,20 @@ void print_places(const TileCatalogue& catalogue, const TileMetric& metric,
             if (reads++ > 0) {
                 in_rows += std::abs(rows - row_place);
                 in_z_order += std::abs(z - z_place);
+                next_in_rows += rows - row_place == 1 ? 1 : 0;
+                next_in_z_order += z - z_place == 1 ? 1 : 0;
             }
             row_place = rows;
             z_place = z;
         }
     }
     if (reads < 2) return;
+    const auto steps = double(reads - 1);
     fmt::print(
-        "tiles between consecutive reads of {}, tau 16: {:.1f} row by row, {:.1f} in Z-order\n",
-        reads, in_rows / double(reads - 1), in_z_order / double(reads - 1));
+        "{} reads, tau 16: {:.1f} tiles apart row by row, {:.1f} in Z-order; the next in the file "
+        "{:.0f} % and {:.0f} % of the time\n",
+        reads, in_rows / steps, in_z_order / steps, 100 * next_in_rows / steps,
+        100 * next_in_z_order / steps);
 }
 
 }  // namespace

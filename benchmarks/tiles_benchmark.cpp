@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "api/error.h"
 #include "benchmarks.h"
 #include "platform/context.h"
 #include "run/locations.h"
@@ -56,6 +57,13 @@ struct Selected {
     double collecting_ms = 0, deciding_ms = 0, tested = 0, judged = 0, drawn = 0, refused = 0;
 };
 
+double counter_of(run::Stage& stage, const std::string& wanted) {
+    for (const auto& [name, value] : stage.counters()) {
+        if (name == wanted) return value;
+    }
+    throw ContractError("no counter " + wanted);
+}
+
 Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain, const char* method,
                      run::Settings settings, int frames) {
     settings.emplace_back("tau", kTau);
@@ -68,12 +76,7 @@ Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain,
     stage.prepare();
     stage.upload();
     stage.resize({640, 480});
-    const auto counter = [&](const std::string& wanted) {
-        for (const auto& [name, value] : stage.counters()) {
-            if (name == wanted) return value;
-        }
-        return 0.0;
-    };
+    const auto counter = [&](const char* name) { return counter_of(stage, name); };
     for (int i = 0; i < 2000; ++i) {
         stage.select(camera_of(terrain->info(), 0), {});
         if (i > 3 && counter("tiles_missing") == 0) break;
@@ -146,6 +149,38 @@ void print_collecting(const Terrain& terrain) {
         });
         fmt::print("        collecting {}: one tree {:.4f} ms, two layers {:.4f} ms\n", name, one,
                    two);
+    }
+}
+
+/// Section 5.2: tiles that were not there when they were wanted, over a flight that goes on at 60
+/// frames a second, a sample and a half a frame.
+void print_prefetch(const std::shared_ptr<const terrain::HeightField>& terrain) {
+    constexpr int kFrames = 300;
+    for (const char* prefetch : {"0", "8"}) {
+        run::VitalSigns signs;
+        run::Stage stage({terrain,
+                          run::default_plugin_folder() / "tile_quadtree.so",
+                          "dltq",
+                          {{"tau", "2"}, {"prefetch", prefetch}},
+                          ""},
+                         signs);
+        stage.prepare();
+        stage.upload();
+        stage.resize({640, 480});
+        double missing = 0, wanted = 0, frames = 0;
+        for (int frame = 0; frame < kFrames; ++frame) {
+            const auto due = std::chrono::steady_clock::now() + std::chrono::microseconds(16667);
+            stage.select(camera_of(terrain->info(), 3 * frame), {.frame = frame, .seconds = 0});
+            std::this_thread::sleep_until(due);
+            if (frame < kFrames / 5) continue;  // the pool fills
+            missing += counter_of(stage, "tiles_missing");
+            wanted += counter_of(stage, "tiles_wanted");
+            frames += counter_of(stage, "tiles_missing") > 0 ? 1 : 0;
+        }
+        stage.release();
+        fmt::print(
+            "  dltq, prefetch {}: {:.0f} of {:.0f} wanted tiles missing, in {:.0f} of {} frames\n",
+            prefetch, missing, wanted, frames, kFrames - kFrames / 5);
     }
 }
 
@@ -225,6 +260,7 @@ void tiles_cost(const Options& options) {
                        : "does not hold");
         print_collecting(*terrain);
     }
+    print_prefetch(north_west_corner(*whole, 4097));
     print_errors_cost(*north_west_corner(*whole, 4097), options.repetitions);
 }
 
