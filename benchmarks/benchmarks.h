@@ -75,8 +75,11 @@ void blocks_cost(const Options& options);
 /// needs a device.
 void staleness_cost(const Options& options);
 /// `tiles`: how the tile quadtrees select, from 1025 a side up to `size` or the terrain's, and what
-/// one number for error and height costs in triangles; needs a device.
+/// errors on the GPU cost; needs a device.
 void tiles_cost(const Options& options);
+
+/// `tile-counts`: tiles that the cuboids of Yang et al. draw against `fu`, by each reading of (12).
+void tile_counts(const Options& options);
 
 /// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
 void harness_cost();

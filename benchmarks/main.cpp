@@ -29,9 +29,9 @@ std::shared_ptr<const terrain::HeightField> north_west_corner(const Terrain& who
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    const std::vector<std::string> known = {"blocks",  "errors", "harness",   "lindstrom",
-                                            "patches", "rays",   "staleness", "store",
-                                            "tiles",   "truth"};
+    const std::vector<std::string> known = {"blocks",      "errors", "harness",   "lindstrom",
+                                            "patches",     "rays",   "staleness", "store",
+                                            "tile-counts", "tiles",  "truth"};
     std::vector<std::string> subjects = known;
     app.add_option("subjects", subjects,
                    fmt::format("{}; all when none is named", fmt::join(known, ", ")))
@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
         if (wanted("patches")) lodbench::benchmarks::patches_cost(options);
         if (wanted("store")) lodbench::benchmarks::store_cost(options);
         if (wanted("staleness")) lodbench::benchmarks::staleness_cost(options);
+        if (wanted("tile-counts")) lodbench::benchmarks::tile_counts(options);
         if (wanted("tiles")) lodbench::benchmarks::tiles_cost(options);
         if (wanted("truth")) lodbench::benchmarks::truth_cost(options);
     } catch (const std::exception& error) {

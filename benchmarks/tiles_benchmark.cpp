@@ -1,6 +1,6 @@
 // The visible tile selection of Yang et al. 2016, table 1: by one tree on the CPU, by one tree and
-// by two layers on the GPU, and how each grows with the terrain; and figure 9's question, what a
-// tile's error costs in triangles when the height of its cuboid is stored in its place.
+// by two layers on the GPU, and how each grows with the terrain; and what the errors of tiles cost,
+// computed on the GPU from resident heights or on the CPU.
 //
 // Terrains of several sizes have the same spacing, so a larger one reaches farther to the horizon.
 // Selection is all of `select` with the visible region and the decisions waited for (sync), over
@@ -10,13 +10,19 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "api/error.h"
 #include "benchmarks.h"
+#include "platform/context.h"
 #include "run/locations.h"
 #include "run/stage.h"
+#include "tile_quadtree/resident_errors.h"
 #include "tile_quadtree/tile_selection.h"
+#include "tile_shaders.h"
 
 namespace lodbench::benchmarks {
 namespace {
@@ -47,8 +53,16 @@ Camera camera_of(const TerrainInfo& info, int frame) {
 
 struct Selected {
     double ms = 0;  ///< median
-    double judged = 0, drawn = 0, refused = 0;
+    /// Means.
+    double collecting_ms = 0, deciding_ms = 0, tested = 0, judged = 0, drawn = 0, refused = 0;
 };
+
+double counter_of(run::Stage& stage, const std::string& wanted) {
+    for (const auto& [name, value] : stage.counters()) {
+        if (name == wanted) return value;
+    }
+    throw ContractError("no counter " + wanted);
+}
 
 Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain, const char* method,
                      run::Settings settings, int frames) {
@@ -62,12 +76,7 @@ Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain,
     stage.prepare();
     stage.upload();
     stage.resize({640, 480});
-    const auto counter = [&](const std::string& wanted) {
-        for (const auto& [name, value] : stage.counters()) {
-            if (name == wanted) return value;
-        }
-        return 0.0;
-    };
+    const auto counter = [&](const char* name) { return counter_of(stage, name); };
     for (int i = 0; i < 2000; ++i) {
         stage.select(camera_of(terrain->info(), 0), {});
         if (i > 3 && counter("tiles_missing") == 0) break;
@@ -82,6 +91,9 @@ Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain,
             stage.select(camera, {.frame = frame, .seconds = frame / 60.0});
             glFinish();
         }));
+        selected.collecting_ms += counter("collecting_ms") / frames;
+        selected.deciding_ms += counter("deciding_ms") / frames;
+        selected.tested += counter("tiles_tested") / frames;
         selected.judged += counter("tiles_judged") / frames;
         selected.drawn += counter("tiles_drawn") / frames;
         selected.refused += counter("splits_refused") / frames;
@@ -92,16 +104,131 @@ Selected select_over(const std::shared_ptr<const terrain::HeightField>& terrain,
     return selected;
 }
 
+struct Variant {
+    const char* name;
+    const char* method;
+    run::Settings settings;
+};
+std::vector<Variant> variants() {
+    return {
+        {"sltq-cpu", "sltq-cpu", {}},
+        {"sltq-cpu, shortcut", "sltq-cpu", {{"shortcut", "true"}}},
+        {"sltq-gpu", "sltq-gpu", {{"sync", "true"}}},
+        {"dltq", "dltq", {{"sync", "true"}}},
+        {"dltq, errors on the GPU", "dltq", {{"sync", "true"}, {"errors", "gpu"}}},
+        {"dltq, prune", "dltq", {{"sync", "true"}, {"prune", "true"}}},
+    };
+}
+
 /// Collecting visible tiles alone, without judging them: ms, best of five.
 template <typename Collect>
 double collecting_ms(const Collect& collect) {
     double best = 1e300;
-    std::vector<TileId> visible;
     for (int i = 0; i < 5; ++i) {
-        visible.clear();
+        tile_quadtree::VisibleTiles visible;
         best = std::min(best, seconds_of([&] { collect(visible); }));
     }
     return 1e3 * best;
+}
+
+void print_collecting(const Terrain& terrain) {
+    const TileCatalogue catalogue(terrain);
+    const tile_quadtree::DoubleLayerTree tree(catalogue, 4);
+    const SampleBox whole = catalogue.whole();
+    // A region that cuts through lower trees on all sides.
+    const SampleBox inner{whole.last_row / 5, whole.last_column / 5, whole.last_row * 4 / 5,
+                          whole.last_column * 4 / 5};
+    for (const auto& [name, region] :
+         {std::pair("all tiles", whole), std::pair("the middle", inner)}) {
+        const double one = collecting_ms([&](tile_quadtree::VisibleTiles& visible) {
+            tile_quadtree::collect_from_one_tree(catalogue, region, visible);
+        });
+        const double two = collecting_ms([&](tile_quadtree::VisibleTiles& visible) {
+            tree.collect(
+                region, [](const TileId&) { return true; }, visible);
+        });
+        fmt::print("        collecting {}: one tree {:.4f} ms, two layers {:.4f} ms\n", name, one,
+                   two);
+    }
+}
+
+/// Section 5.2: tiles that were not there when they were wanted, over a flight that goes on at 60
+/// frames a second, a sample and a half a frame.
+void print_prefetch(const std::shared_ptr<const terrain::HeightField>& terrain) {
+    constexpr int kFrames = 300;
+    for (const char* prefetch : {"0", "8"}) {
+        run::VitalSigns signs;
+        run::Stage stage({terrain,
+                          run::default_plugin_folder() / "tile_quadtree.so",
+                          "dltq",
+                          {{"tau", "2"}, {"prefetch", prefetch}},
+                          ""},
+                         signs);
+        stage.prepare();
+        stage.upload();
+        stage.resize({640, 480});
+        double missing = 0, wanted = 0, frames = 0;
+        for (int frame = 0; frame < kFrames; ++frame) {
+            const auto due = std::chrono::steady_clock::now() + std::chrono::microseconds(16667);
+            stage.select(camera_of(terrain->info(), 3 * frame), {.frame = frame, .seconds = 0});
+            std::this_thread::sleep_until(due);
+            if (frame < kFrames / 5) continue;  // the pool fills
+            missing += counter_of(stage, "tiles_missing");
+            wanted += counter_of(stage, "tiles_wanted");
+            frames += counter_of(stage, "tiles_missing") > 0 ? 1 : 0;
+        }
+        stage.release();
+        fmt::print(
+            "  dltq, prefetch {}: {:.0f} of {:.0f} wanted tiles missing, in {:.0f} of {} frames\n",
+            prefetch, missing, wanted, frames, kFrames - kFrames / 5);
+    }
+}
+
+/// (10) and (12) of tiles whose heights are in memory.
+void print_errors_cost(const Terrain& terrain, int repetitions) {
+    const platform::Context context("");
+    gl::Device device;
+    const TileCatalogue catalogue(terrain);
+    common::TileStreamer streamer(terrain, {.slots = 2048});
+    streamer.upload(device, "benchmark: heights");
+    std::vector<TileId> parents, children;
+    for (int row = 0; row + 1 < catalogue.pyramid().rows(1) && children.size() < 2000; ++row) {
+        for (int column = 0; column < catalogue.pyramid().columns(1) && children.size() < 2000;
+             ++column) {
+            parents.push_back({1, row, column});
+            catalogue.for_each_child(parents.back(),
+                                     [&](const TileId& child) { children.push_back(child); });
+        }
+    }
+    streamer.load(children);
+    std::vector<std::vector<float>> heights(children.size(), std::vector<float>(kTileSampleCount));
+    for (std::size_t i = 0; i < children.size(); ++i) terrain.read_tile(children[i], heights[i]);
+    double gpu = 1e300, cpu = 1e300;
+    float greatest = 0;
+    for (int i = 0; i < repetitions; ++i) {
+        tile_quadtree::ResidentErrors errors;
+        errors.upload(device, tile_quadtree_shaders(), streamer.slots());
+        glFinish();
+        gpu = std::min(gpu, seconds_of([&] {
+                           for (const TileId& tile : parents) {
+                               static_cast<void>(errors.children(catalogue, streamer, tile));
+                           }
+                           errors.compute(streamer);
+                           glFinish();
+                       }));
+        cpu = std::min(cpu, seconds_of([&] {
+                           for (const auto& tile : heights) {
+                               greatest =
+                                   std::max(greatest, tile_quadtree::error_share(tile).error);
+                           }
+                       }));
+    }
+    streamer.release();
+    fmt::print(
+        "  errors of {} resident tiles from their heights: {:.2f} us a tile on the GPU, {:.2f} us "
+        "on one CPU thread; greatest {:.1f} m\n",
+        children.size(), 1e6 * gpu / double(children.size()), 1e6 * cpu / double(children.size()),
+        greatest);
 }
 
 }  // namespace
@@ -110,61 +237,31 @@ void tiles_cost(const Options& options) {
     const std::unique_ptr<terrain::HeightField> whole = terrain::load_terrain(options.source());
     fmt::print("tiles, {}: tau {}, {} frames of 640 x 480, selection waited for\n",
                whole->info().name, kTau, options.frames);
-    fmt::print(
-        "   size | sltq-cpu ms  tiles judged | sltq-gpu ms  judged | dltq ms  judged | dltq prune "
-        "ms "
-        " judged | collecting, one tree / two layers, all tiles ms\n");
-    struct Row {
-        double cpu, gpu, layers;
-    };
-    std::vector<std::pair<int, Row>> rows;
     for (const int size : sizes_of(options, whole->info())) {
         const auto terrain = north_west_corner(*whole, size);
-        const Selected cpu = select_over(terrain, "sltq-cpu", {}, options.frames);
-        const Selected gpu = select_over(terrain, "sltq-gpu", {{"sync", "true"}}, options.frames);
-        const Selected layers = select_over(terrain, "dltq", {{"sync", "true"}}, options.frames);
-        const Selected pruned =
-            select_over(terrain, "dltq", {{"sync", "true"}, {"prune", "true"}}, options.frames);
-        const TileCatalogue catalogue(*terrain);
-        const tile_quadtree::DoubleLayerTree tree(catalogue, 4);
-        const SampleBox region = catalogue.whole();
-        const double one_ms = collecting_ms([&](std::vector<TileId>& visible) {
-            tile_quadtree::collect_from_one_tree(catalogue, region, catalogue.pyramid().root(),
-                                                 visible);
-        });
-        const double two_ms = collecting_ms([&](std::vector<TileId>& visible) {
-            tree.collect(
-                region, [](const TileId&) { return true; }, visible);
-        });
         fmt::print(
-            "  {:5} | {:11.3f} {:13.0f} | {:11.3f} {:7.0f} | {:7.3f} {:7.0f} | {:13.3f} {:7.0f} | "
-            "{:.4f} / {:.4f}\n",
-            size, cpu.ms, cpu.judged, gpu.ms, gpu.judged, layers.ms, layers.judged, pruned.ms,
-            pruned.judged, one_ms, two_ms);
-        if (cpu.refused > 0) fmt::print("        the pool was too small for what tau asks for\n");
-        rows.push_back({size, {cpu.ms, gpu.ms, layers.ms}});
-        std::fflush(stdout);
+            "  {0} x {0}: select ms, median | of it collecting, deciding | tiles tested, judged, "
+            "drawn\n",
+            size);
+        std::map<std::string, double> ms;
+        for (const Variant& variant : variants()) {
+            const Selected found =
+                select_over(terrain, variant.method, variant.settings, options.frames);
+            fmt::print("    {:24} {:9.3f} | {:9.3f} {:9.3f} | {:7.0f} {:7.0f} {:7.1f}{}\n",
+                       variant.name, found.ms, found.collecting_ms, found.deciding_ms, found.tested,
+                       found.judged, found.drawn,
+                       found.refused > 0 ? ", the pool was too small" : "");
+            ms[variant.name] = found.ms;
+            std::fflush(stdout);
+        }
+        fmt::print("    Y1, dltq < sltq-gpu <= sltq-cpu: {}\n",
+                   ms["dltq"] < ms["sltq-gpu"] && ms["sltq-gpu"] <= ms["sltq-cpu"]
+                       ? "holds"
+                       : "does not hold");
+        print_collecting(*terrain);
     }
-    if (rows.empty()) return;
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-        const Row &small = rows[i - 1].second, &large = rows[i].second;
-        fmt::print("  {} to {}: sltq-cpu x {:.2f}, sltq-gpu x {:.2f}, dltq x {:.2f}\n",
-                   rows[i - 1].first, rows[i].first, large.cpu / small.cpu, large.gpu / small.gpu,
-                   large.layers / small.layers);
-    }
-    const Row& last = rows.back().second;
-    fmt::print("  Y1, dltq < sltq-gpu <= sltq-cpu at {}: {}\n", rows.back().first,
-               last.layers < last.gpu && last.gpu <= last.cpu ? "holds" : "does not hold");
-    const auto terrain = north_west_corner(*whole, 1025);
-    const Selected one = select_over(terrain, "sltq-cpu", {}, options.frames);
-    const Selected separate =
-        select_over(terrain, "sltq-cpu", {{"separate_error", "true"}}, options.frames);
-    const Selected fu = select_over(terrain, "fu", {{"sync", "true"}}, options.frames);
-    fmt::print(
-        "  1025, tau {}: {:.1f} tiles with one number for error and height, {:.1f} with "
-        "separate_error, "
-        "{:.1f} by fu\n",
-        kTau, one.drawn, separate.drawn, fu.drawn);
+    print_prefetch(north_west_corner(*whole, 4097));
+    print_errors_cost(*north_west_corner(*whole, 4097), options.repetitions);
 }
 
 }  // namespace lodbench::benchmarks

@@ -12,9 +12,14 @@ constexpr ParamSpec kCracks =
     choice_param("cracks", "snap", "snap|skirt|none",
                  "snap: border vertices move onto the coarser neighbour's; skirt: upright strips "
                  "hang from the borders; none: gaps stay");
-constexpr ParamSpec kSeparateError = boolean_param(
-    "separate_error", false,
-    "keeps a tile's error and the height of its cuboid apart; false: one number for both (12)");
+constexpr ParamSpec kSharedHeight =
+    choice_param("shared_height", "none", "range|triangle|none",
+                 "(12), one number for a tile's error and the height of its cuboid: its height "
+                 "range, or the relief of its triangles; none: the error is apart from the height");
+constexpr ParamSpec kErrors = choice_param(
+    "errors", "summaries", "summaries|gpu",
+    "summaries: a tile's error is the terrain's; gpu: it is computed on the GPU from the heights "
+    "of its children where they are resident. Not with shared_height = range");
 constexpr ParamSpec kPoolTiles =
     integer_param("pool_tiles", 256, 2, 2048, "tiles that are resident at most, 16.5 KiB each");
 constexpr ParamSpec kLoaderThreads =
@@ -37,7 +42,7 @@ constexpr ParamSpec kRegionPixels = integer_param(
 
 constexpr ParamSpec kDltqParams[] = {
     kTau,
-    kSeparateError,
+    kSharedHeight,
     kCracks,
     kCulling,
     kPoolTiles,
@@ -45,6 +50,7 @@ constexpr ParamSpec kDltqParams[] = {
     kUploads,
     kPrefetch,
     kEvaluate,
+    kErrors,
     kSync,
     kRegionPixels,
     integer_param("upper_levels", 4, 0, 12,
@@ -52,13 +58,23 @@ constexpr ParamSpec kDltqParams[] = {
     boolean_param("prune", false,
                   "leaves out lower trees that the metric, on the CPU, does not refine; false: as "
                   "in the paper all whose root is visible")};
-constexpr ParamSpec kSltqGpuParams[] = {kTau,       kSeparateError, kCracks,      kCulling,
-                                        kPoolTiles, kLoaderThreads, kUploads,     kPrefetch,
-                                        kEvaluate,  kSync,          kRegionPixels};
-constexpr ParamSpec kSltqCpuParams[] = {kTau,       kSeparateError, kCracks,  kCulling,
-                                        kPoolTiles, kLoaderThreads, kUploads, kPrefetch};
-constexpr ParamSpec kFuParams[] = {kTau,     kCracks,   kCulling,  kPoolTiles, kLoaderThreads,
-                                   kUploads, kPrefetch, kEvaluate, kSync,      kRegionPixels};
+constexpr ParamSpec kSltqGpuParams[] = {kTau,       kSharedHeight,  kCracks,  kCulling,
+                                        kPoolTiles, kLoaderThreads, kUploads, kPrefetch,
+                                        kEvaluate,  kErrors,        kSync,    kRegionPixels};
+constexpr ParamSpec kSltqCpuParams[] = {
+    kTau,
+    kSharedHeight,
+    kCracks,
+    kCulling,
+    kPoolTiles,
+    kLoaderThreads,
+    kUploads,
+    kPrefetch,
+    boolean_param("shortcut", false,
+                  "judges only tiles whose ancestors split; false: as in the paper all in view")};
+constexpr ParamSpec kFuParams[] = {kTau,       kSharedHeight,  kCracks,      kCulling,
+                                   kPoolTiles, kLoaderThreads, kUploads,     kPrefetch,
+                                   kEvaluate,  kSync,          kRegionPixels};
 
 constexpr const char* kCitation =
     "Y. Yang, C. Wang, Y. Gao, J. Xing, 2016, Large Scale Terrain Real-Time Rendering on GPU Using "
@@ -69,7 +85,7 @@ constexpr MethodDescriptor kMethods[] = {
     {.id = "dltq",
      .title = "Yang et al.: double-layer tile quadtree, cuboid error metric on the GPU",
      .citation = kCitation,
-     .version = "1",
+     .version = "2",
      .capabilities = kCapabilities,
      .gl_extensions = nullptr,
      .params = kDltqParams,
@@ -82,7 +98,7 @@ constexpr MethodDescriptor kMethods[] = {
      .title = "Yang et al.'s comparator: single-layer tile quadtree, cuboid error metric on the "
               "GPU",
      .citation = kCitation,
-     .version = "1",
+     .version = "2",
      .capabilities = kCapabilities,
      .gl_extensions = nullptr,
      .params = kSltqGpuParams,
@@ -94,7 +110,7 @@ constexpr MethodDescriptor kMethods[] = {
     {.id = "sltq-cpu",
      .title = "Yang et al.'s comparator: single-layer tile quadtree, all on the CPU",
      .citation = kCitation,
-     .version = "1",
+     .version = "2",
      .capabilities = kCapabilities,
      .gl_extensions = nullptr,
      .params = kSltqCpuParams,
@@ -107,7 +123,7 @@ constexpr MethodDescriptor kMethods[] = {
      .title = "Yang et al.'s comparator after Fu Wei et al. 2012: saturated errors and nested "
               "spheres, decided on the GPU",
      .citation = kCitation,
-     .version = "1",
+     .version = "2",
      .capabilities = kCapabilities,
      .gl_extensions = nullptr,
      .params = kFuParams,

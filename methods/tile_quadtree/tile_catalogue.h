@@ -27,19 +27,27 @@ struct SampleBox {
     friend bool operator==(const SampleBox&, const SampleBox&) = default;
 };
 
+/// Calls `visit` for every tile, in the order of TilePyramid::index: children before their parents.
+template <typename Visit>
+void for_each_tile(const TilePyramid& pyramid, const Visit& visit) {
+    for (int level = 0; level < pyramid.levels(); ++level) {
+        for (int row = 0; row < pyramid.rows(level); ++row) {
+            for (int column = 0; column < pyramid.columns(level); ++column) {
+                visit(TileId{level, row, column});
+            }
+        }
+    }
+}
+
 /// The summaries of all tiles, 12 bytes each, and where tiles lie.
 class TileCatalogue {
 public:
     explicit TileCatalogue(const Terrain& terrain)
         : info_(terrain.info()), pyramid_(terrain.tiles()) {
         summaries_.reserve(pyramid_.count());
-        for (int level = 0; level < pyramid_.levels(); ++level) {
-            for (int row = 0; row < pyramid_.rows(level); ++row) {
-                for (int column = 0; column < pyramid_.columns(level); ++column) {
-                    summaries_.push_back(terrain.tile_summary({level, row, column}));
-                }
-            }
-        }
+        for_each_tile(pyramid_, [&](const TileId& tile) {
+            summaries_.push_back(terrain.tile_summary(tile));
+        });
     }
 
     [[nodiscard]] const TerrainInfo& info() const { return info_; }

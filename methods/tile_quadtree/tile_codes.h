@@ -9,7 +9,7 @@
 //
 // Errata. In (1), (2), (6) and (7) the shift must count from the tile's own depth, 2 (LEVEL - l):
 // with UL or LL, as printed, a tile that is not at the bottom of its tree loses its leading bits.
-// The left sides of (2) and of (5)'s summand are ZIndex'. MX in (8) and (9) is M.
+// The left side of (2) lacks the prime: it is ZIndex'. MX in (8) and (9) is M.
 
 #include <cstddef>
 #include <cstdint>

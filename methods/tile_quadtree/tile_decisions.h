@@ -2,8 +2,9 @@
 // The metric on the GPU: visible tiles packed into a texture, a decision a texel. Yang et al. 2016,
 // sections 3.4 and 4.2.
 
+#include <algorithm>
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -23,12 +24,16 @@ public:
     static constexpr int kRow = 4096;
 
     /// `shaders`: the room's. By a fragment pass, as in the paper, or by a compute pass.
-    void upload(gl::Device& device, std::span<const gl::ShaderSource> shaders, MetricKind kind,
-                bool by_compute) {
+    /// `resident_errors`: summaries may hold ChildSlots, and ResidentErrors::shares is bound at
+    /// texture unit 3 whenever tiles are asked about.
+    void upload(gl::Device& device, std::span<const gl::ShaderSource> shaders,
+                const MetricOptions& metric, bool by_compute, bool resident_errors) {
         device_ = &device;
         by_compute_ = by_compute;
         std::map<std::string, std::string> defines;
-        if (kind == MetricKind::spheres) defines.emplace("NESTED_SPHERES", "1");
+        if (metric.volume == Volume::sphere) defines.emplace("NESTED_SPHERES", "1");
+        if (resident_errors) defines.emplace("RESIDENT_ERRORS", "1");
+        if (metric.shared == SharedHeight::triangle) defines.emplace("SHARED_WITH_TRIANGLE", "1");
         program_ = by_compute ? gl::Program(device, "tile_quadtree: decisions", shaders,
                                             {{GL_COMPUTE_SHADER, "decide.comp"}}, defines)
                               : gl::Program(device, "tile_quadtree: decisions", shaders,
@@ -40,37 +45,34 @@ public:
     void release() { *this = TileDecisions(); }
 
     /// Asks for a decision on each tile, for the camera that the block `Frozen` describes. Tiles
-    /// go into the textures row by row in their order. `scale` as for TileMetric::judge.
-    void ask(const TileMetric& metric, double scale, std::vector<TileId> tiles) {
+    /// go into the textures row by row in their order, and only they are sent. `scale` as for
+    /// TileMetric::judge; `summaries[i]` is TileMetric::packed of `tiles[i]`, or has ChildSlots in
+    /// place of error and 0.
+    void ask(double scale, std::vector<TileId> tiles, std::span<const glm::vec4> summaries) {
         asked_ = std::move(tiles);
         if (asked_.empty()) return;
         const int rows = int((asked_.size() + kRow - 1) / kRow);
         make_room(rows);
-        const std::size_t texels = std::size_t(rows) * kRow;
-        places_.resize(texels);
-        summaries_.resize(texels);
-        for (std::size_t i = 0; i < asked_.size(); ++i) {
-            const TileId& tile = asked_[i];
+        places_.clear();
+        for (const TileId& tile : asked_) {
             const int side = kTileCells << tile.level;
-            places_[i] = {tile.level, tile.column * side, tile.row * side, 0};
-            summaries_[i] = metric.packed(tile);
+            places_.emplace_back(tile.level, tile.column * side, tile.row * side, 0);
         }
-        // The last row's rest: level 0, which never splits.
-        std::fill(places_.begin() + std::ptrdiff_t(asked_.size()), places_.end(), glm::vec4(0));
-        place_texture_.write(0, 0, 0, kRow, rows, GL_RGBA, GL_FLOAT, places_.data());
-        summary_texture_.write(0, 0, 0, kRow, rows, GL_RGBA, GL_FLOAT, summaries_.data());
+        write(place_texture_, places_);
+        write(summary_texture_, summaries);
         place_texture_.bind(1);
         summary_texture_.bind(2);
         program_.set("scale", float(scale));
+        program_.set("tile_count", int(asked_.size()));
         if (by_compute_) {
             glBindImageTexture(0, decision_texture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
-            device_->dispatch_compute(program_, kRow / 64, GLuint(rows), 1);
+            device_->dispatch_compute(program_, GLuint(width() + 63) / 64, GLuint(rows), 1);
             glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
         } else {
-            const OffscreenPass pass(framebuffer_, kRow, rows, false);
+            const OffscreenPass pass(framebuffer_, width(), rows, false);
             device_->draw_arrays(program_, vertices_, GL_TRIANGLES, 0, 3);
         }
-        readback_.begin(*device_, "tile_quadtree: decisions", decision_texture_, kRow, rows,
+        readback_.begin(*device_, "tile_quadtree: decisions", decision_texture_, width(), rows,
                         GL_RED_INTEGER, GL_UNSIGNED_BYTE);
     }
     /// Whether answers are on their way, and whether `answers` would not wait.
@@ -82,7 +84,8 @@ public:
     [[nodiscard]] std::pair<std::vector<TileId>, std::vector<std::uint8_t>> answers() {
         std::vector<std::uint8_t> decisions;
         if (pending()) {
-            decisions.resize((asked_.size() + kRow - 1) / kRow * kRow);
+            const std::size_t rows = (asked_.size() + kRow - 1) / kRow;
+            decisions.resize(rows * std::size_t(width()));
             readback_.read(decisions.data());
             decisions.resize(asked_.size());
         }
@@ -94,6 +97,20 @@ public:
     }
 
 private:
+    /// Texels of a row that are decided on: of a single row those in use, in whole words of four.
+    [[nodiscard]] int width() const {
+        return int(std::min(std::size_t(kRow), (asked_.size() + 3) / 4 * 4));
+    }
+    static void write(gl::Texture& texture, std::span<const glm::vec4> texels) {
+        const int whole_rows = int(texels.size() / kRow), rest = int(texels.size() % kRow);
+        if (whole_rows > 0) {
+            texture.write(0, 0, 0, kRow, whole_rows, GL_RGBA, GL_FLOAT, texels.data());
+        }
+        if (rest > 0) {
+            texture.write(0, 0, whole_rows, rest, 1, GL_RGBA, GL_FLOAT,
+                          texels.last(std::size_t(rest)).data());
+        }
+    }
     void make_room(int rows) {
         if (place_texture_ && place_texture_.height() >= rows) return;
         int height = 1;
@@ -116,7 +133,7 @@ private:
     gl::Framebuffer framebuffer_;
     Readback readback_;
     std::vector<TileId> asked_;
-    std::vector<glm::vec4> places_, summaries_;
+    std::vector<glm::vec4> places_;
 };
 
 }  // namespace lodbench::tile_quadtree

@@ -13,14 +13,22 @@
 
 #include "tile_quadtree/nested_spheres.h"
 #include "tile_quadtree/tile_catalogue.h"
+#include "tile_quadtree/tile_errors.h"
 
 namespace lodbench::tile_quadtree {
 
-enum class MetricKind {
-    cuboid,           ///< one number for error and height of the cuboid: (12)
-    cuboid_separate,  ///< the error (10) and the height range, each its own
-    spheres,          ///< saturated errors, nested spheres
+enum class Volume { cuboid, sphere };
+
+struct MetricOptions {
+    Volume volume = Volume::cuboid;
+    SharedHeight shared = SharedHeight::none;
+    bool saturated = false;  ///< each error is the greatest of its own and its descendants'
 };
+
+/// The comparator's (`fu`): saturated errors, nested spheres.
+[[nodiscard]] constexpr MetricOptions fu_metric(SharedHeight shared) {
+    return {Volume::sphere, shared, true};
+}
 
 /// Both sides of (15), in metres.
 struct Judgement {
@@ -33,29 +41,33 @@ struct Judgement {
 
 class TileMetric {
 public:
-    TileMetric(const TileCatalogue& catalogue, MetricKind kind)
-        : catalogue_(catalogue), kind_(kind) {
-        if (kind == MetricKind::spheres) spheres_ = nested_spheres(catalogue);
+    /// The terrain is read here alone, and only where options.shared is `triangle`.
+    TileMetric(const Terrain& terrain, const TileCatalogue& catalogue, const MetricOptions& options)
+        : catalogue_(catalogue),
+          options_(options),
+          errors_(tile_errors(terrain, catalogue, options.shared)) {
+        if (options.saturated) saturate(catalogue, errors_);
+        if (options.volume == Volume::sphere) spheres_ = nested_spheres(catalogue);
     }
 
-    [[nodiscard]] MetricKind kind() const { return kind_; }
+    [[nodiscard]] const MetricOptions& options() const { return options_; }
+    /// What is held against the tolerance, metres.
+    [[nodiscard]] float error(const TileId& tile) const { return errors_[catalogue_.index(tile)]; }
 
     /// `scale` is lambda / tau: pixels a unit of tangent, per pixel of tolerance.
     [[nodiscard]] Judgement judge(const TileId& tile, const glm::dvec3& eye, double scale) const {
+        const double reach = scale * double(error(tile));
         const common::Box box = catalogue_.box(tile);
-        if (kind_ == MetricKind::spheres) {
+        if (options_.volume == Volume::sphere) {
             const NestedSphere& sphere = spheres_[catalogue_.index(tile)];
             const glm::dvec3 centre(0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y),
                                     sphere.centre_height);
-            return {scale * double(sphere.error),
-                    std::max(glm::distance(eye, centre) - double(sphere.radius), 0.0)};
+            return {reach, std::max(glm::distance(eye, centre) - double(sphere.radius), 0.0)};
         }
         // (13) lacks a base: the cuboid stands on the tile's lowest sample.
-        const CuboidSize size = cuboid_size(tile);
         const glm::dvec3 low = box.low;
-        const glm::dvec3 high(box.high.x, box.high.y, box.low.z + double(size.height));
-        return {scale * double(size.error),
-                glm::length(glm::max(glm::max(low - eye, eye - high), glm::dvec3(0)))};
+        const glm::dvec3 high(box.high.x, box.high.y, box.low.z + double(cuboid_height(tile)));
+        return {reach, glm::length(glm::max(glm::max(low - eye, eye - high), glm::dvec3(0)))};
     }
     /// (15), and that there is something finer.
     [[nodiscard]] bool splits(const TileId& tile, const glm::dvec3& eye, double scale) const {
@@ -65,30 +77,23 @@ public:
     /// What the GPU is given of a tile. Cuboids: lowest height, height of the cuboid, error, 0.
     /// Spheres: height of the centre, radius, error, 0. Metres.
     [[nodiscard]] glm::vec4 packed(const TileId& tile) const {
-        if (kind_ == MetricKind::spheres) {
+        if (options_.volume == Volume::sphere) {
             const NestedSphere& sphere = spheres_[catalogue_.index(tile)];
-            return {sphere.centre_height, sphere.radius, sphere.error, 0};
+            return {sphere.centre_height, sphere.radius, error(tile), 0};
         }
-        const CuboidSize size = cuboid_size(tile);
-        return {catalogue_.summary(tile).min_height, size.height, size.error, 0};
+        return {catalogue_.summary(tile).min_height, cuboid_height(tile), error(tile), 0};
     }
 
 private:
-    struct CuboidSize {
-        float height, error;
-    };
-    /// (12) saves a number by storing the larger of error and height range as both; a rough tile's
-    /// error becomes its height range by that.
-    [[nodiscard]] CuboidSize cuboid_size(const TileId& tile) const {
+    [[nodiscard]] float cuboid_height(const TileId& tile) const {
+        if (options_.shared != SharedHeight::none) return error(tile);
         const TileSummary& known = catalogue_.summary(tile);
-        const float range = known.max_height - known.min_height;
-        if (kind_ == MetricKind::cuboid_separate) return {range, known.midpoint_error};
-        const float both = std::max(range, known.midpoint_error);
-        return {both, both};
+        return known.max_height - known.min_height;
     }
 
     const TileCatalogue& catalogue_;
-    MetricKind kind_;
+    MetricOptions options_;
+    std::vector<float> errors_;          ///< by index
     std::vector<NestedSphere> spheres_;  ///< by index; empty for cuboids
 };
 

@@ -7,6 +7,7 @@
 // are drawn (tile_tree, tile_cut), and are they in memory (common/tile_streamer).
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "gl/device.h"
 #include "gl/embedded_shaders.h"
 #include "tile_quadtree/methods.h"
+#include "tile_quadtree/resident_errors.h"
 #include "tile_quadtree/tile_cut.h"
 #include "tile_quadtree/tile_decisions.h"
 #include "tile_quadtree/tile_scene.h"
@@ -26,25 +28,34 @@ namespace {
 
 enum class Kind { dltq, sltq_gpu, sltq_cpu, fu };
 
+SharedHeight shared_height(const Params& params) {
+    const std::string& name = params.choice("shared_height");
+    return name == "range"      ? SharedHeight::range
+           : name == "triangle" ? SharedHeight::triangle
+                                : SharedHeight::none;
+}
+
 struct Options {
     Kind kind;
-    MetricKind metric;
+    MetricOptions metric;
     double tau;
-    bool culling, by_compute, sync, prune;
+    bool culling, by_compute, sync, prune, shortcut, resident_errors;
     int upper_levels, prefetch_frames, region_pixels;
     Cracks cracks;
     common::TileStreamerOptions streaming;
 
     Options(Kind method, const Params& params)
         : kind(method),
-          metric(method == Kind::fu                 ? MetricKind::spheres
-                 : params.boolean("separate_error") ? MetricKind::cuboid_separate
-                                                    : MetricKind::cuboid),
+          metric(method == Kind::fu ? fu_metric(shared_height(params))
+                                    : MetricOptions{.shared = shared_height(params)}),
           tau(params.real("tau")),
           culling(params.boolean("culling")),
           by_compute(on_gpu() && params.choice("evaluate") == "compute"),
           sync(on_gpu() && params.boolean("sync")),
           prune(method == Kind::dltq && params.boolean("prune")),
+          shortcut(!on_gpu() && params.boolean("shortcut")),
+          resident_errors((method == Kind::dltq || method == Kind::sltq_gpu) &&
+                          params.choice("errors") == "gpu"),
           upper_levels(method == Kind::dltq ? int(params.integer("upper_levels")) : 0),
           prefetch_frames(int(params.integer("prefetch"))),
           region_pixels(on_gpu() ? int(params.integer("region_pixels")) : 1),
@@ -53,16 +64,40 @@ struct Options {
                                                       : Cracks::none),
           streaming{.slots = int(params.integer("pool_tiles")),
                     .loader_threads = int(params.integer("loader_threads")),
-                    .uploads_per_frame = int(params.integer("uploads_per_frame"))} {}
+                    .uploads_per_frame = int(params.integer("uploads_per_frame"))} {
+        if (resident_errors && metric.shared == SharedHeight::range) {
+            throw InputError(
+                "errors = \"gpu\" does not go with shared_height = \"range\": a tile's height "
+                "range is that of samples which are not resident; choose shared_height = \"none\" "
+                "or \"triangle\", or errors = \"summaries\"");
+        }
+    }
     [[nodiscard]] bool on_gpu() const { return kind != Kind::sltq_cpu; }
 };
 
 /// What was counted of the last selection.
 struct FrameCounts {
-    std::size_t visible = 0;  ///< tiles that were decided on
-    std::size_t wanted = 0;   ///< tiles that the decisions ask for
-    std::size_t missing = 0;  ///< of them, those that were not resident
+    std::size_t tested = 0;    ///< tiles that were asked whether they are visible
+    std::size_t judged = 0;    ///< tiles that were decided on
+    std::size_t resident = 0;  ///< of them, those whose error came from resident heights
+    std::size_t wanted = 0;    ///< tiles that the decisions ask for
+    std::size_t missing = 0;   ///< of them, those that were not resident
     int drawn = 0, stand_ins = 0, refused = 0;
+    double collecting_s = 0, deciding_s = 0, streaming_s = 0;  ///< wall clock
+};
+
+/// Adds the seconds of its life to a sum.
+class Spent {
+public:
+    explicit Spent(double& sum) : sum_(sum) {}
+    ~Spent() { sum_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+    Spent(const Spent&) = delete;
+    Spent& operator=(const Spent&) = delete;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    double& sum_;
+    Clock::time_point begin_ = Clock::now();
 };
 
 class TileQuadtree : public Method {
@@ -71,7 +106,7 @@ public:
 
     void prepare(const Terrain& terrain, gl::Device&) override {
         catalogue_.emplace(terrain);
-        metric_.emplace(*catalogue_, options_.metric);
+        metric_.emplace(terrain, *catalogue_, options_.metric);
         if (options_.kind == Kind::dltq) layers_.emplace(*catalogue_, options_.upper_levels);
         decisions_.emplace(catalogue_->pyramid().count());
         cut_.emplace(*catalogue_);
@@ -83,7 +118,11 @@ public:
         scene_.emplace(options_.cracks, options_.region_pixels);
         scene_->upload(device, embedded_shaders(), options_.streaming.slots);
         if (options_.on_gpu()) {
-            judges_.upload(device, embedded_shaders(), options_.metric, options_.by_compute);
+            judges_.upload(device, embedded_shaders(), options_.metric, options_.by_compute,
+                           options_.resident_errors);
+        }
+        if (options_.resident_errors) {
+            errors_.upload(device, embedded_shaders(), options_.streaming.slots);
         }
         streamer_->upload(device, "tile_quadtree: heights of the pool");
     }
@@ -92,6 +131,7 @@ public:
         const std::optional<glm::dvec3> before = eye_;
         camera_ = camera;
         eye_ = camera.position;
+        counts_ = {};
         if (settled_) {
             select_exactly();
             return;
@@ -99,8 +139,7 @@ public:
         const TileView view(camera, options_.tau, options_.culling);
         TileTree tree;
         if (!options_.on_gpu()) {
-            tree = tree_by_cpu(*catalogue_, *metric_, view, most_leaves());
-            counts_.visible = tree.nodes.size();
+            tree = tree_on_cpu(view);
         } else {
             if (options_.sync) {
                 ask_region();
@@ -111,8 +150,7 @@ public:
                 if (scene_->region_arrived()) take_region(view);
                 if (judges_.arrived()) take_decisions();
             }
-            tree =
-                tree_by_decisions(*catalogue_, *metric_, *decisions_, region_, view, most_leaves());
+            tree = tree_of_decisions(view, region_);
         }
         const glm::dvec3 step = before ? camera.position - *before : glm::dvec3(0);
         stream(tree, step);
@@ -143,11 +181,17 @@ public:
         const common::TileStreamerCounts& streamed = streamer_->counts();
         return {{"tiles_drawn", double(counts_.drawn)},
                 {"ancestors_drawn", double(counts_.stand_ins)},
-                {"tiles_judged", double(counts_.visible)},
+                {"tiles_tested", double(counts_.tested)},
+                {"tiles_judged", double(counts_.judged)},
+                {"errors_from_heights", double(counts_.resident)},
                 {"tiles_wanted", double(counts_.wanted)},
                 {"tiles_missing", double(counts_.missing)},
                 {"splits_refused", double(counts_.refused)},
                 {"tiles_resident", double(streamer_->resident())},
+                {"collecting_ms", 1e3 * counts_.collecting_s},
+                {"deciding_ms", 1e3 * counts_.deciding_s},
+                {"streaming_ms", 1e3 * counts_.streaming_s},
+                {"errors_computed_so_far", double(errors_.computed_count())},
                 {"pool_hits_so_far", double(streamed.hits)},
                 {"pool_misses_so_far", double(streamed.misses())},
                 {"tiles_needed_so_far", double(needed_count_)},
@@ -160,6 +204,7 @@ public:
     void release(gl::Device&) override {
         streamer_->release();
         judges_.release();
+        errors_.release();
         scene_->release();
     }
 
@@ -167,12 +212,16 @@ private:
     /// The root has its slot for good.
     [[nodiscard]] int most_leaves() const { return options_.streaming.slots - 1; }
 
-    void ask_region() { scene_->ask_region(*streamer_); }
+    void ask_region() {
+        const Spent spent(counts_.collecting_s);
+        scene_->ask_region(*streamer_);
+    }
 
     /// Where nothing was seen though something may be in view, what was drawn may be too wrong to
     /// tell: from within a valley, the root's surface lies above the eye. Then all is taken as
     /// visible.
     void take_region(const TileView& view) {
+        const Spent spent(counts_.collecting_s);
         region_ = scene_->region(*catalogue_);
         if (region_.empty() && view.may_see(*catalogue_, catalogue_->pyramid().root())) {
             region_ = catalogue_->whole();
@@ -180,16 +229,42 @@ private:
     }
 
     void ask_decisions(const TileView& view) {
-        std::vector<TileId> visible;
+        VisibleTiles visible = visible_tiles(view);
+        const Spent spent(counts_.deciding_s);
+        summaries_.clear();
+        for (const TileId& tile : visible.tiles) summaries_.push_back(summary_of(tile));
+        if (options_.resident_errors) {
+            errors_.compute(*streamer_);
+            errors_.shares().bind(3);
+        }
+        judges_.ask(view.scale, std::move(visible.tiles), summaries_);
+    }
+    [[nodiscard]] VisibleTiles visible_tiles(const TileView& view) {
+        const Spent spent(counts_.collecting_s);
+        VisibleTiles visible;
         if (layers_) {
             layers_->collect(
                 region_, [&](const TileId& root) { return !options_.prune || reached(root, view); },
                 visible);
         } else {
-            collect_from_one_tree(*catalogue_, region_, catalogue_->pyramid().root(), visible);
+            collect_from_one_tree(*catalogue_, region_, visible);
         }
-        counts_.visible = visible.size();
-        judges_.ask(*metric_, view.scale, std::move(visible));
+        counts_.tested = visible.tested;
+        counts_.judged = visible.tiles.size();
+        counts_.resident = 0;
+        return visible;
+    }
+    /// As the GPU takes it.
+    [[nodiscard]] glm::vec4 summary_of(const TileId& tile) {
+        glm::vec4 packed = metric_->packed(tile);
+        if (!options_.resident_errors) return packed;
+        if (const auto children = errors_.children(*catalogue_, *streamer_, tile)) {
+            const auto [first, second] = children->packed();
+            packed.z = first;
+            packed.w = second;
+            ++counts_.resident;
+        }
+        return packed;
     }
     /// Whether the tile and all above it split. One part in 10^4 more is let through, so that the
     /// GPU, which has the last word, is asked wherever its rounding may decide otherwise.
@@ -202,18 +277,56 @@ private:
         return true;
     }
     void take_decisions() {
+        const Spent spent(counts_.deciding_s);
         const auto [tiles, splits] = judges_.answers();
+        decisions_->assign(*catalogue_, tiles, splits);
+    }
+    [[nodiscard]] TileTree tree_of_decisions(const TileView& view, const SampleBox& region) {
+        const Spent spent(counts_.streaming_s);
+        return tree_by_decisions(*catalogue_, *metric_, *decisions_, region, view, most_leaves());
+    }
+
+    /// `sltq-cpu`: as the paper's, all tiles in view are judged; by the shortcut, those alone whose
+    /// ancestors split.
+    [[nodiscard]] TileTree tree_on_cpu(const TileView& view) {
+        if (options_.shortcut) {
+            const Spent spent(counts_.deciding_s);
+            TileTree tree = tree_by_cpu(*catalogue_, *metric_, view, most_leaves());
+            counts_.tested = counts_.judged = tree.nodes.size();
+            return tree;
+        }
+        const VisibleTiles visible = tiles_in_view(view);
+        judge_on_cpu(visible.tiles, view);
+        return tree_of_decisions(view, catalogue_->whole());
+    }
+    [[nodiscard]] VisibleTiles tiles_in_view(const TileView& view) {
+        const Spent spent(counts_.collecting_s);
+        VisibleTiles visible;
+        collect_from_one_tree(
+            *catalogue_, [&](const TileId& tile) { return view.may_see(*catalogue_, tile); },
+            catalogue_->pyramid().root(), visible);
+        counts_.tested = visible.tested;
+        counts_.judged = visible.tiles.size();
+        return visible;
+    }
+    void judge_on_cpu(const std::vector<TileId>& tiles, const TileView& view) {
+        const Spent spent(counts_.deciding_s);
+        std::vector<std::uint8_t> splits;
+        splits.reserve(tiles.size());
+        for (const TileId& tile : tiles) {
+            splits.push_back(metric_->splits(tile, view.eye, view.scale) ? 1 : 0);
+        }
         decisions_->assign(*catalogue_, tiles, splits);
     }
 
     /// Draws what is resident and asks for what is not. `step`: the way from the frame before,
     /// metres.
     void stream(const TileTree& tree, const glm::dvec3& step) {
+        const Spent spent(counts_.streaming_s);
         const std::vector<DrawnTile> wanted = cut_->build(tree, [](const TileId&) { return true; });
         note_needed(wanted);
         std::vector<TileId> leaves, ancestors, soon;
         for (const DrawnTile& tile : wanted) leaves.push_back(tile.tile);
-        counts_.missing = 0;
         for (const TileId& tile : leaves) {
             if (streamer_->slot(tile)) continue;
             ++counts_.missing;
@@ -247,25 +360,26 @@ private:
 
     /// For the camera as it is, whatever was drawn before, with everything resident.
     void select_exactly() {
+        counts_ = {};
         const TileView view(camera_, options_.tau, options_.culling);
-        TileTree tree = tree_by_cpu(*catalogue_, *metric_, view, most_leaves());
-        counts_.visible = tree.nodes.size();
+        TileTree tree;
         if (options_.on_gpu()) {
             // Whatever is drawn now shows this camera's ground as it is: the region does not depend
             // on the frame before.
-            load_and_freeze(tree);
+            load_and_freeze(tree_by_cpu(*catalogue_, *metric_, view, most_leaves()));
             ask_region();
             region_ = scene_->region(*catalogue_);
             ask_decisions(view);
             take_decisions();
-            tree =
-                tree_by_decisions(*catalogue_, *metric_, *decisions_, region_, view, most_leaves());
+            tree = tree_of_decisions(view, region_);
+        } else {
+            tree = tree_on_cpu(view);
         }
-        counts_.missing = 0;
         load_and_freeze(tree);
         note_needed(drawn_);
     }
     void load_and_freeze(const TileTree& tree) {
+        const Spent spent(counts_.streaming_s);
         std::vector<DrawnTile> drawn = cut_->build(tree, [](const TileId&) { return true; });
         std::vector<TileId> tiles;
         for (const DrawnTile& tile : drawn) tiles.push_back(tile.tile);
@@ -298,6 +412,8 @@ private:
     std::optional<common::TileStreamer> streamer_;
     std::optional<TileScene> scene_;
     TileDecisions judges_;
+    ResidentErrors errors_;
+    std::vector<glm::vec4> summaries_;  ///< of the tiles that are asked about
     SampleBox region_;
     Camera camera_;
     std::optional<glm::dvec3> eye_;  ///< of the last frame

@@ -3,6 +3,7 @@
 // lower trees. Yang et al. 2016, sections 3.2, 3.3 and 5.1.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,21 +12,36 @@
 
 namespace lodbench::tile_quadtree {
 
+struct VisibleTiles {
+    std::vector<TileId> tiles;  ///< parents before their children
+    std::size_t tested = 0;     ///< tiles that were asked whether they are visible
+};
+
 /// The single-layer tree: from the root down, each node asked for itself; what is not visible is
-/// left out with all below it.
-inline void collect_from_one_tree(const TileCatalogue& catalogue, const SampleBox& region,
-                                  const TileId& tile, std::vector<TileId>& visible) {
-    if (!catalogue.samples(tile).touches(region)) return;
-    visible.push_back(tile);
+/// left out with all below it. `is_visible(tile)`: by the region, or by the view frustum.
+template <typename IsVisible>
+void collect_from_one_tree(const TileCatalogue& catalogue, const IsVisible& is_visible,
+                           const TileId& tile, VisibleTiles& visible) {
+    ++visible.tested;
+    if (!is_visible(tile)) return;
+    visible.tiles.push_back(tile);
     catalogue.for_each_child(tile, [&](const TileId& child) {
-        collect_from_one_tree(catalogue, region, child, visible);
+        collect_from_one_tree(catalogue, is_visible, child, visible);
     });
+}
+inline void collect_from_one_tree(const TileCatalogue& catalogue, const SampleBox& region,
+                                  VisibleTiles& visible) {
+    collect_from_one_tree(
+        catalogue, [&](const TileId& tile) { return catalogue.samples(tile).touches(region); },
+        catalogue.pyramid().root(), visible);
 }
 
 /// The double-layer tree. Tile.x and Tile.y are computed beforehand, from the codes, level upon
 /// level in Z-order: of the upper tree, and once for all lower trees, which are alike. What a lower
-/// tree's tile adds to its root's place is then one addition, (8) and (9), and a lower tree is read
-/// from one end to the other, without a test where it lies in the region as a whole.
+/// tree's tile adds to its root's place is then one addition, (8) and (9). Each tree is walked from
+/// its root down: "if the node is not in the view frustum, the node and its children are ignored".
+/// A lower tree that lies in the region as a whole is read from one end to the other, without a
+/// test.
 class DoubleLayerTree {
 public:
     /// The upper tree has depths 0 to `upper_levels`, or the whole tree's where that is less.
@@ -42,22 +58,15 @@ public:
     /// Appends the tiles that touch the region: those of the upper tree, then each lower tree whose
     /// root does and of which `wanted(root)` holds.
     template <typename Wanted>
-    void collect(const SampleBox& region, const Wanted& wanted,
-                 std::vector<TileId>& visible) const {
-        const int root_level = catalogue_.pyramid().root().level;
-        for (int depth = 0; depth <= upper_depth_; ++depth) {
-            for (std::size_t i = first_of_depth(depth); i < first_of_depth(depth + 1); ++i) {
-                const TileId tile = tile_at(root_level - depth, upper_[i]);
-                if (!catalogue_.pyramid().contains(tile)) continue;
-                if (!catalogue_.samples(tile).touches(region)) continue;
-                visible.push_back(tile);
-            }
-        }
-        const int level_of_roots = root_level - upper_depth_;
-        const std::size_t end = visible.size();
-        for (std::size_t i = 0; i < end; ++i) {
-            const TileId root = visible[i];
-            if (root.level == level_of_roots && wanted(root)) walk_lower(root, region, visible);
+    void collect(const SampleBox& region, const Wanted& wanted, VisibleTiles& visible) const {
+        const TileId root = catalogue_.pyramid().root();
+        const std::size_t begin = visible.tiles.size();
+        walk({upper_, upper_depth_, {0, 0}, root.level}, 0, 0, region, visible);
+        const std::size_t end = visible.tiles.size();
+        for (std::size_t i = begin; i < end; ++i) {
+            const TileId lower_root = visible.tiles[i];
+            if (lower_root.level != root.level - upper_depth_ || !wanted(lower_root)) continue;
+            collect_lower(lower_root, region, visible);
         }
     }
 
@@ -74,27 +83,57 @@ private:
         }
         return all;
     }
-    static TileId tile_at(int level, const glm::ivec2& place) {
-        return {level, place.y / kTileCells >> level, place.x / kTileCells >> level};
+
+    /// The upper tree, or one of the lower ones.
+    struct Layer {
+        const std::vector<glm::ivec2>& places;
+        int deepest;
+        glm::ivec2 corner;  ///< of its root, in cells
+        int root_level;
+
+        /// The i-th of its places.
+        [[nodiscard]] TileId tile(int depth, std::size_t i) const {
+            const glm::ivec2 place = corner + places[i];
+            const int level = root_level - depth;
+            return {level, place.y / kTileCells >> level, place.x / kTileCells >> level};
+        }
+    };
+
+    /// The node of this code and what is below it.
+    void walk(const Layer& layer, int depth, std::uint64_t code, const SampleBox& region,
+              VisibleTiles& visible) const {
+        const TileId tile = layer.tile(depth, first_of_depth(depth) + code);
+        if (!catalogue_.pyramid().contains(tile)) return;
+        ++visible.tested;
+        if (!catalogue_.samples(tile).touches(region)) return;
+        visible.tiles.push_back(tile);
+        walk_children(layer, depth, code, region, visible);
     }
+    void walk_children(const Layer& layer, int depth, std::uint64_t code, const SampleBox& region,
+                       VisibleTiles& visible) const {
+        if (depth == layer.deepest) return;
+        for (std::uint64_t quadrant = 0; quadrant < 4; ++quadrant) {
+            walk(layer, depth + 1, code << 2 | quadrant, region, visible);
+        }
+    }
+
     /// All of a lower tree but its root, which the upper tree has.
-    void walk_lower(const TileId& root, const SampleBox& region,
-                    std::vector<TileId>& visible) const {
+    void collect_lower(const TileId& root, const SampleBox& region, VisibleTiles& visible) const {
         const int cells = kTileCells << root.level;
-        const glm::ivec2 corner(root.column * cells, root.row * cells);
+        const Layer layer{
+            lower_, lower_depth(), {root.column * cells, root.row * cells}, root.level};
         const SampleBox samples = catalogue_.samples(root);
         // Some of its tiles do not exist where it reaches beyond the grid.
         const bool whole = region.contains(samples) &&
                            samples.last_row - samples.first_row == cells &&
                            samples.last_column - samples.first_column == cells;
-        for (int depth = 1; depth <= lower_depth(); ++depth) {
+        if (!whole) {
+            walk_children(layer, 0, 0, region, visible);
+            return;
+        }
+        for (int depth = 1; depth <= layer.deepest; ++depth) {
             for (std::size_t i = first_of_depth(depth); i < first_of_depth(depth + 1); ++i) {
-                const TileId tile = tile_at(root.level - depth, corner + lower_[i]);
-                if (!whole && (!catalogue_.pyramid().contains(tile) ||
-                               !catalogue_.samples(tile).touches(region))) {
-                    continue;
-                }
-                visible.push_back(tile);
+                visible.tiles.push_back(layer.tile(depth, i));
             }
         }
     }

@@ -48,24 +48,43 @@ Camera random_camera(const TerrainInfo& info, std::mt19937& random) {
     return camera;
 }
 
-class Decisions : public testing::TestWithParam<std::tuple<const char*, MetricKind, const char*>> {
+struct Metric {
+    const char* name;
+    MetricOptions options;
 };
+constexpr Metric kMetrics[] = {{"none", {}},
+                               {"triangle", {.shared = SharedHeight::triangle}},
+                               {"range", {.shared = SharedHeight::range}},
+                               {"fu", fu_metric(SharedHeight::none)}};
+
+/// As TileDecisions takes them.
+std::vector<glm::vec4> packed(const TileMetric& metric, const std::vector<TileId>& tiles) {
+    std::vector<glm::vec4> summaries;
+    for (const TileId& tile : tiles) summaries.push_back(metric.packed(tile));
+    return summaries;
+}
+std::vector<TileId> all_tiles(const TileCatalogue& catalogue) {
+    std::vector<TileId> tiles;
+    for_each_tile(catalogue.pyramid(), [&](const TileId& tile) { tiles.push_back(tile); });
+    return tiles;
+}
+
+class Decisions : public testing::TestWithParam<std::tuple<const char*, Metric, const char*>> {};
 
 TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) {
-    const auto& [name, kind, evaluate] = GetParam();
+    const auto& [name, chosen, evaluate] = GetParam();
     constexpr int kCameras = 200;
     const auto terrain = std::string(name) == "puget" ? puget() : ridged();
     const platform::Context context("");
     gl::Device device;
     const test::RoomShaders shaders("tile_quadtree");
     const TileCatalogue catalogue(*terrain);
-    const TileMetric metric(catalogue, kind);
-    std::vector<TileId> tiles;
-    collect_from_one_tree(catalogue, catalogue.whole(), catalogue.pyramid().root(), tiles);
-    ASSERT_EQ(tiles.size(), catalogue.pyramid().count());
+    const TileMetric metric(*terrain, catalogue, chosen.options);
+    const std::vector<TileId> tiles = all_tiles(catalogue);
     gl::Buffer frozen(device, "test: Frozen", sizeof(gl::Frozen));
     TileDecisions decisions;
-    decisions.upload(device, shaders.get(), kind, std::string(evaluate) == "compute");
+    decisions.upload(device, shaders.get(), chosen.options, std::string(evaluate) == "compute",
+                     false);
     std::mt19937 random(7);
     std::size_t split = 0, kept = 0, differing = 0;
     for (int i = 0; i < kCameras; ++i) {
@@ -75,7 +94,7 @@ TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) 
         const gl::Frozen block = gl::make_frozen(camera, terrain->info());
         frozen.write(0, sizeof block, &block);
         frozen.bind_uniform(gl::kFrozenBinding);
-        decisions.ask(metric, scale, tiles);
+        decisions.ask(scale, tiles, packed(metric, tiles));
         const auto [asked, splits] = decisions.answers();
         ASSERT_EQ(asked, tiles);
         ASSERT_EQ(splits.size(), tiles.size());
@@ -112,17 +131,14 @@ TEST_P(Decisions, of_the_gpu_are_the_cpus_but_within_rounding_of_the_threshold) 
 }
 
 std::string name_of(
-    const testing::TestParamInfo<std::tuple<const char*, MetricKind, const char*>>& chosen) {
-    constexpr const char* kKinds[] = {"cuboid", "separate", "spheres"};
-    return fmt::format("{}_{}_{}", std::get<0>(chosen.param),
-                       kKinds[int(std::get<1>(chosen.param))], std::get<2>(chosen.param));
+    const testing::TestParamInfo<std::tuple<const char*, Metric, const char*>>& chosen) {
+    return fmt::format("{}_{}_{}", std::get<0>(chosen.param), std::get<1>(chosen.param).name,
+                       std::get<2>(chosen.param));
 }
 
 INSTANTIATE_TEST_SUITE_P(all, Decisions,
                          testing::Combine(testing::Values("puget", "ridged"),
-                                          testing::Values(MetricKind::cuboid,
-                                                          MetricKind::cuboid_separate,
-                                                          MetricKind::spheres),
+                                          testing::ValuesIn(kMetrics),
                                           testing::Values("fragment", "compute")),
                          name_of);
 
@@ -134,8 +150,7 @@ TEST(TileTexture, of_more_tiles_than_a_row_of_texels_has_gives_each_its_own_deci
     gl::Device device;
     const test::RoomShaders shaders("tile_quadtree");
     const TileCatalogue catalogue(terrain);
-    std::vector<TileId> tiles;
-    collect_from_one_tree(catalogue, catalogue.whole(), catalogue.pyramid().root(), tiles);
+    const std::vector<TileId> tiles = all_tiles(catalogue);
     ASSERT_GT(tiles.size(), 2U * TileDecisions::kRow) << "three rows";
     gl::Buffer frozen(device, "test: Frozen", sizeof(gl::Frozen));
     Camera camera;
@@ -143,11 +158,14 @@ TEST(TileTexture, of_more_tiles_than_a_row_of_texels_has_gives_each_its_own_deci
     const gl::Frozen block = gl::make_frozen(camera, terrain.info());
     frozen.write(0, sizeof block, &block);
     frozen.bind_uniform(gl::kFrozenBinding);
-    const TileMetric metric(catalogue, MetricKind::cuboid);
+    const TileMetric metric(terrain, catalogue, {});
     for (const bool by_compute : {false, true}) {
         TileDecisions decisions;
-        decisions.upload(device, shaders.get(), MetricKind::cuboid, by_compute);
-        decisions.ask(metric, 1e9, tiles);
+        decisions.upload(device, shaders.get(), metric.options(), by_compute, false);
+        const std::uint64_t before = device.uploaded_bytes();
+        decisions.ask(1e9, tiles, packed(metric, tiles));
+        EXPECT_EQ(device.uploaded_bytes() - before, 2 * sizeof(glm::vec4) * tiles.size())
+            << "what is used, not whole rows";
         EXPECT_TRUE(decisions.pending());
         const auto [asked, splits] = decisions.answers();
         EXPECT_FALSE(decisions.pending());
@@ -157,7 +175,7 @@ TEST(TileTexture, of_more_tiles_than_a_row_of_texels_has_gives_each_its_own_deci
             wrong += (splits[t] != 0) != (tiles[t].level > 0 && tiles[t].column % 2 == 0);
         }
         EXPECT_EQ(wrong, 0U);
-        decisions.ask(metric, 1, {});
+        decisions.ask(1, {}, {});
         EXPECT_FALSE(decisions.pending());
         EXPECT_TRUE(decisions.answers().second.empty());
     }

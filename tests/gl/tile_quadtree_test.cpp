@@ -77,7 +77,6 @@ TEST_P(TileMethods, snapping_leaves_no_crack_pixel_skirts_hide_them_and_none_lea
     const char* kinds[3] = {"snap", "skirt", "none"};
     for (int kind = 0; kind < 3; ++kind) {
         Settings settings = {{"tau", "6"}, {"cracks", kinds[kind]}};
-        if (method != "fu") settings.emplace_back("separate_error", "true");
         Flight flight(terrain, "tile_quadtree", method, settings);
         for (const double heading : {50.0, 220.0}) {
             const run::FrameRecord record =
@@ -108,15 +107,16 @@ TEST(TileMethodsThatShareAMetric, send_the_same_triangles_and_the_cpus_shows_the
         flight.stage().draw_picture();
         return Drawn{flight.stage().capture().vertices, flight.stage().read_depth()};
     };
-    for (const char* separate : {"false", "true"}) {
+    for (const char* shared : {"none", "triangle", "range"}) {
         for (const double heading : {40.0, 200.0}) {
-            Settings settings = {{"tau", "20"}, {"separate_error", separate}};
+            Settings settings = {{"tau", "20"}, {"shared_height", shared}};
             const Drawn cpu = drawn("sltq-cpu", settings, heading);
             const Drawn one_tree = drawn("sltq-gpu", settings, heading);
             const Drawn two_layers = drawn("dltq", settings, heading);
             settings.emplace_back("evaluate", "compute");
             settings.emplace_back("prune", "true");
             settings.emplace_back("upper_levels", "2");
+            if (std::string(shared) != "range") settings.emplace_back("errors", "gpu");
             const Drawn otherwise = drawn("dltq", settings, heading);
             EXPECT_GT(one_tree.vertices.size(), 1000U);
             EXPECT_TRUE(one_tree.vertices == two_layers.vertices);
@@ -126,8 +126,58 @@ TEST(TileMethodsThatShareAMetric, send_the_same_triangles_and_the_cpus_shows_the
             for (std::size_t i = 0; i < cpu.depth.size(); ++i) {
                 pixels += cpu.depth[i] != one_tree.depth[i];
             }
-            EXPECT_EQ(pixels, 0U) << "heading " << heading << ", separate " << separate;
+            EXPECT_EQ(pixels, 0U) << "heading " << heading << ", shared height " << shared;
         }
+    }
+}
+
+TEST(SltqCpu, judges_all_tiles_in_view_and_by_its_shortcut_fewer_for_the_same_triangles) {
+    const auto terrain = ridged(1025, 1025);
+    std::vector<glm::vec3> vertices[2];
+    double judged[2] = {}, tested[2] = {};
+    for (const int shortcut : {0, 1}) {
+        Flight flight(terrain, "tile_quadtree", "sltq-cpu",
+                      {{"tau", "20"}, {"shortcut", shortcut == 0 ? "false" : "true"}});
+        flight.select(low_camera(terrain->info()));
+        flight.stage().settle();
+        vertices[shortcut] = flight.stage().capture().vertices;
+        judged[shortcut] = flight.counter("tiles_judged");
+        tested[shortcut] = flight.counter("tiles_tested");
+    }
+    EXPECT_GT(vertices[0].size(), 1000U);
+    EXPECT_TRUE(vertices[0] == vertices[1]);
+    EXPECT_LT(judged[1], judged[0]);
+    EXPECT_LT(judged[0], tested[0]) << "children of a visible tile may be out of view";
+    EXPECT_GT(judged[0], 90) << "full resolution is judged wherever it is in view";
+}
+
+TEST(ErrorsOnTheGpu, are_used_where_children_are_resident_and_draw_the_same) {
+    const auto terrain = ridged(1025, 1025);
+    for (const char* method : {"dltq", "sltq-gpu"}) {
+        std::vector<glm::vec3> vertices[2];
+        for (const int gpu : {0, 1}) {
+            Flight flight(terrain, "tile_quadtree", method,
+                          {{"tau", "20"}, {"errors", gpu == 0 ? "summaries" : "gpu"}});
+            flight.select(low_camera(terrain->info()));
+            flight.stage().settle();
+            vertices[gpu] = flight.stage().capture().vertices;
+            EXPECT_EQ(flight.counter("errors_from_heights") > 0, gpu == 1);
+            EXPECT_EQ(flight.counter("errors_computed_so_far") > 0, gpu == 1);
+        }
+        EXPECT_GT(vertices[0].size(), 1000U);
+        EXPECT_TRUE(vertices[0] == vertices[1]) << method;
+    }
+}
+
+TEST(ErrorsOnTheGpu, are_refused_with_a_height_range_which_resident_heights_do_not_give) {
+    try {
+        Flight flight(ridged(65, 65), "tile_quadtree", "dltq",
+                      {{"shared_height", "range"}, {"errors", "gpu"}});
+        FAIL() << "not refused";
+    } catch (const std::exception& error) {
+        EXPECT_NE(std::string(error.what()).find("choose shared_height = \"none\""),
+                  std::string::npos)
+            << error.what();
     }
 }
 
@@ -169,7 +219,6 @@ TEST_P(WhileTilesAreMissing, what_stands_in_for_them_is_watertight_and_covers_th
                          {"uploads_per_frame", "3"},
                          {"prefetch", "0"},
                          {"loader_threads", "1"}};
-    if (std::string(GetParam()) != "fu") settings.emplace_back("separate_error", "true");
     Flight flight(terrain, "tile_quadtree", GetParam(), settings);
     int frames_with_gaps = 0, checked = 0;
     double most_drawn = 0;

@@ -30,6 +30,15 @@ std::set<std::size_t> indices_of(const TileCatalogue& catalogue, const std::vect
     return found;
 }
 
+/// The root and the children of each visible tile.
+std::size_t tested_from_above(const TileCatalogue& catalogue, const std::vector<TileId>& visible) {
+    std::size_t tested = 1;
+    for (const TileId& tile : visible) {
+        catalogue.for_each_child(tile, [&](const TileId&) { ++tested; });
+    }
+    return tested;
+}
+
 TEST(VisibleTiles, of_one_tree_and_of_two_layers_are_those_that_touch_the_region) {
     std::mt19937 random(1);
     for (const auto& [rows, columns] : kSizes) {
@@ -48,22 +57,25 @@ TEST(VisibleTiles, of_one_tree_and_of_two_layers_are_those_that_touch_the_region
                 return !catalogue.samples(tile).touches(region);
             });
             const auto expected = indices_of(catalogue, touching);
-            std::vector<TileId> one;
-            collect_from_one_tree(catalogue, region, catalogue.pyramid().root(), one);
-            EXPECT_EQ(indices_of(catalogue, one), expected);
+            VisibleTiles one;
+            collect_from_one_tree(catalogue, region, one);
+            EXPECT_EQ(indices_of(catalogue, one.tiles), expected);
+            EXPECT_EQ(one.tested, tested_from_above(catalogue, touching));
             for (const int upper : {0, 1, 2, 4, 12}) {
                 const DoubleLayerTree layers(catalogue, upper);
                 EXPECT_EQ(layers.upper_depth() + layers.lower_depth() + 1,
                           catalogue.pyramid().levels());
-                std::vector<TileId> two;
+                VisibleTiles two;
                 layers.collect(
                     region, [](const TileId&) { return true; }, two);
-                EXPECT_EQ(indices_of(catalogue, two), expected)
+                EXPECT_EQ(indices_of(catalogue, two.tiles), expected)
                     << rows << " x " << columns << ", UL " << upper;
-                std::vector<TileId> pruned;
+                // Children of a tile that is out of view are not visited.
+                EXPECT_LE(two.tested, one.tested);
+                VisibleTiles pruned;
                 layers.collect(
                     region, [](const TileId&) { return false; }, pruned);
-                EXPECT_TRUE(std::ranges::all_of(pruned, [&](const TileId& tile) {
+                EXPECT_TRUE(std::ranges::all_of(pruned.tiles, [&](const TileId& tile) {
                     return catalogue.depth(tile) <= layers.upper_depth();
                 }));
             }
