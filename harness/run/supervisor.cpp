@@ -19,7 +19,9 @@
 #include "api/error.h"
 #include "base/child_process.h"
 #include "base/console.h"
+#include "base/process_tree.h"
 #include "run/cell_record.h"
+#include "run/last_words.h"
 
 namespace lodbench::run {
 
@@ -29,6 +31,7 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::size_t kLogLimit = 1 << 20;
 constexpr auto kWatchInterval = std::chrono::milliseconds(20);
+constexpr auto kTreeInterval = std::chrono::milliseconds(200);  // what it started is dearer to ask
 constexpr double kExitGrace_s = 2;  // for the exit handlers of a child whose result is written
 
 /// The page that both processes map.
@@ -59,10 +62,15 @@ class Log {
 public:
     explicit Log(std::filesystem::path path) : path_(std::move(path)) {}
 
+    /// As `run::last_words` has it.
+    [[nodiscard]] std::string last_words() const { return run::last_words(tail_); }
+
     /// Takes all that is in the pipe now.
     void drain(int pipe) {
         char block[16384];
         for (ssize_t count = 0; (count = read(pipe, block, sizeof block)) > 0;) {
+            tail_.append(block, std::size_t(count));
+            if (tail_.size() > kTail) tail_.erase(0, tail_.size() - kTail);
             if (written_ >= kLogLimit) continue;
             if (!stream_.is_open()) stream_.open(path_, std::ios::binary);
             const std::size_t taken = std::min(std::size_t(count), kLogLimit - written_);
@@ -77,19 +85,32 @@ private:
     std::filesystem::path path_;
     std::ofstream stream_;
     std::size_t written_ = 0;
+    static constexpr std::size_t kTail = 4096;
+    std::string tail_;
 };
 
-/// Resident bytes of a process; 0 when it is gone.
-std::uint64_t resident_bytes(pid_t pid) {
-    const base::FileDescriptor file(
-        open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
-    char text[128] = {};
-    if (!file || read(file.number(), text, sizeof text - 1) <= 0) return 0;
-    unsigned long long total = 0;
-    unsigned long long resident = 0;
-    if (std::sscanf(text, "%llu %llu", &total, &resident) != 2) return 0;
-    return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
-}
+/// What a cell has in memory: its process, and more rarely asked, all that it started.
+class MemoryWatch {
+public:
+    /// Bytes. What processes share with one another counts once.
+    std::uint64_t take(const base::ChildProcess& child, SteadyClock::time_point now) {
+        if (now - asked_ >= kTreeInterval) {
+            asked_ = now;
+            together_ = bytes_together(child.processes());
+        }
+        return std::max(base::resident_bytes(child.pid()), together_);
+    }
+
+private:
+    static std::uint64_t bytes_together(const std::vector<pid_t>& processes) {
+        std::uint64_t sum = 0;
+        if (processes.size() < 2) return 0;  // the cheaper question answers that
+        for (const pid_t process : processes) sum += base::proportional_bytes(process);
+        return sum;
+    }
+    SteadyClock::time_point asked_{};
+    std::uint64_t together_ = 0;
+};
 
 /// True where a plugin is asked for a frame: there, and only there, silence means a hang.
 bool belongs_to_a_frame(Call call) {
@@ -131,6 +152,30 @@ CellResult ended(CellStatus status, std::string reason, std::uint64_t peak) {
     result.reason = std::move(reason);
     if (peak > 0) result.peak_rss_bytes = peak;
     return result;
+}
+
+/// What a child that ended by itself leaves: its result, or how it came to an end without one.
+CellResult result_of(const base::ChildEnding& ending, const std::string& text,
+                     const VitalSigns& signs, const std::string& plugin, const Log& log) {
+    if (signs.finished.load() == 1 && !text.empty()) {
+        CellResult result;
+        try {
+            result = read_result(text, "result of plugin " + plugin);
+        } catch (const InputError& error) {
+            return ended(CellStatus::failed, error.what(), 0);
+        }
+        if (!ending.well()) {
+            result.warnings.push_back(
+                fmt::format("after the result was written: {}", ending.words()));
+        }
+        return result;
+    }
+    // A process that ends well without a result was ended by the plugin, not by us.
+    return ended(
+        CellStatus::crashed,
+        fmt::format("{} {}{}{}", ending.words(), place(signs, plugin),
+                    ending.by_signal ? "" : " before its result was written", log.last_words()),
+        0);
 }
 
 void make_inheritable(int descriptor) {
@@ -187,6 +232,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     });
     writing.close();
 
+    MemoryWatch memory;
     std::uint64_t peak = 0;
     std::uint64_t beats = 0;
     auto last_beat = start;
@@ -194,7 +240,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     while (!child.wait(kWatchInterval, reading.number())) {
         log.drain(reading.number());
         const auto now = SteadyClock::now();
-        const std::uint64_t resident = resident_bytes(child.pid());
+        const std::uint64_t resident = memory.take(child, now);
         peak = std::max(peak, resident);
         const auto seconds = [now](auto since) {
             return std::chrono::duration<double>(now - since).count();
@@ -202,16 +248,14 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
         const auto kill_for = [&](CellStatus status, const std::string& what) {
             // Where it stood, read before it is gone for good.
             const std::string reason = fmt::format("{} {}", what, place(*signs, plugin));
-            child.kill_group();
-            while (!child.wait(kWatchInterval)) {
-            }
+            child.end();
             log.drain(reading.number());
             return ended(status, reason, peak);
         };
         // Nothing that the plugin leaves to its exit handlers can take a written result away.
         if (signs->finished.load() == 1) {
             if (!finished) finished = now;
-            if (seconds(*finished) > kExitGrace_s) child.kill_group();
+            if (seconds(*finished) > kExitGrace_s) child.end();
             continue;
         }
         if (resident > limits.memory_bytes) {
@@ -236,26 +280,12 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     }
     log.drain(reading.number());
 
-    const base::ChildEnding& ending = child.ending();
-    const std::string text = base::read_all(result_file);
-    if (signs->finished.load() == 1 && !text.empty()) {
-        CellResult result;
-        try {
-            result = read_result(text, "result of plugin " + plugin);
-        } catch (const InputError& error) {
-            return ended(CellStatus::failed, error.what(), peak);
-        }
-        if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
-        if (!ending.well())
-            result.warnings.push_back(
-                fmt::format("after the result was written: {}", ending.words()));
-        return result;
+    CellResult result = result_of(child.ending(), base::read_all(result_file), *signs, plugin, log);
+    if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
+    if (std::string words = child.left_behind(); !words.empty()) {
+        result.warnings.push_back(std::move(words));
     }
-    // A process that ends well without a result was ended by the plugin, not by us.
-    return ended(CellStatus::crashed,
-                 fmt::format("{} {}{}", ending.words(), place(*signs, plugin),
-                             ending.by_signal ? "" : " before its result was written"),
-                 peak);
+    return result;
 }
 
 int serve_cell(int spec_descriptor, int signs_descriptor, int result_descriptor) {
