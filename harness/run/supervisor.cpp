@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +22,7 @@
 #include "base/process_tree.h"
 #include "run/cell_record.h"
 #include "run/last_words.h"
+#include "run/shared_signs.h"
 
 namespace lodbench::run {
 
@@ -33,28 +34,6 @@ constexpr std::size_t kLogLimit = 1 << 20;
 constexpr auto kWatchInterval = std::chrono::milliseconds(20);
 constexpr auto kTreeInterval = std::chrono::milliseconds(200);  // what it started is dearer to ask
 constexpr double kExitGrace_s = 2;  // for the exit handlers of a child whose result is written
-
-/// The page that both processes map.
-class SharedSigns {
-public:
-    explicit SharedSigns(int descriptor) {
-        void* page =
-            mmap(nullptr, sizeof(VitalSigns), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-        if (page == MAP_FAILED) {
-            throw EnvironmentError(
-                fmt::format("cannot map shared memory: {}", std::strerror(errno)));
-        }
-        signs_ = static_cast<VitalSigns*>(page);
-    }
-    ~SharedSigns() { munmap(signs_, sizeof(VitalSigns)); }
-    SharedSigns(const SharedSigns&) = delete;
-    SharedSigns& operator=(const SharedSigns&) = delete;
-    [[nodiscard]] VitalSigns& operator*() const { return *signs_; }
-    [[nodiscard]] VitalSigns* operator->() const { return signs_; }
-
-private:
-    VitalSigns* signs_;
-};
 
 /// What a child prints, into a file that appears with the first byte and stops growing at its
 /// limit. A log that cannot be written loses its text, not the cell.
@@ -213,8 +192,8 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
         throw EnvironmentError(
             fmt::format("cannot share memory with a child: {}", std::strerror(errno)));
     }
-    const SharedSigns signs(signs_file.number());
-    new (&*signs) VitalSigns;
+    const std::shared_ptr<VitalSigns> signs = map_signs(signs_file.number());
+    new (signs.get()) VitalSigns;
     int ends[2];
     if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
         throw EnvironmentError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
@@ -285,20 +264,43 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     if (std::string words = child.left_behind(); !words.empty()) {
         result.warnings.push_back(std::move(words));
     }
+    if (const int copies = signs->copies.load(); copies > 0) {
+        result.warnings.push_back(
+            fmt::format("{} cop{} of the process came back from a call (fork) and {} ended", copies,
+                        copies == 1 ? "y" : "ies", copies == 1 ? "was" : "were"));
+    }
     return result;
 }
 
+namespace {
+
+using FileIdentity = std::pair<dev_t, ino_t>;
+
+/// Device and number of an open file; zeros where the descriptor is closed.
+FileIdentity identity_of(int descriptor) {
+    struct stat status {};
+    return fstat(descriptor, &status) == 0 ? FileIdentity(status.st_dev, status.st_ino)
+                                           : FileIdentity();
+}
+
+}  // namespace
+
 int serve_cell(int spec_descriptor, int signs_descriptor, int result_descriptor) {
     signal(SIGPIPE, SIG_DFL);  // for plugins, and for what they start
-    const SharedSigns signs(signs_descriptor);
+    const std::shared_ptr<VitalSigns> signs = map_signs(signs_descriptor);
     signs->enter(Call::start);
     CellSpec spec;
     {
         const base::FileDescriptor file(spec_descriptor);
         spec = read_spec(base::read_all(file), "specification of a cell");
     }
+    const FileIdentity expected = identity_of(result_descriptor);
     const CellResult result = fly_cell(spec, *signs);
     signs->enter(Call::write_results);
+    if (identity_of(result_descriptor) != expected) {
+        base::tell("the descriptor of the result was closed or names another file");
+        return 1;
+    }
     if (!base::write_all(result_descriptor, write_result(result))) return 1;
     signs->finished.store(1);
     return 0;
