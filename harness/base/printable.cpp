@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lodbench::base {
 namespace {
 
@@ -59,6 +61,17 @@ std::string printable(std::string_view text) {
         i += length == 0 ? 1 : length;
     }
     return result + "\"";
+}
+
+std::string shortened(std::string_view text, std::size_t bytes) {
+    if (text.size() <= bytes) return std::string(text);
+    std::size_t end = 0;
+    while (end < bytes) {
+        const std::size_t length = std::max<std::size_t>(character_length(text.substr(end)), 1);
+        if (end + length > bytes) break;
+        end += length;
+    }
+    return std::string(text.substr(0, end)) + "...";
 }
 
 std::string plain(std::string_view text) {

@@ -14,6 +14,9 @@ namespace lodbench::base {
 /// it steers a terminal.
 [[nodiscard]] std::string plain(std::string_view text);
 
+/// `text`, or its beginning of at most `bytes` bytes, cut between characters, with "...".
+[[nodiscard]] std::string shortened(std::string_view text, std::size_t bytes);
+
 /// Bytes of the well-formed UTF-8 character that `text` begins with (Unicode standard, table 3-7);
 /// 0 where it begins with none. `text` is not empty.
 [[nodiscard]] std::size_t character_length(std::string_view text);

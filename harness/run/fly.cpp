@@ -12,6 +12,7 @@
 #include <map>
 #include <new>
 #include <thread>
+#include <utility>
 
 #include "base/hash.h"
 #include "base/modules.h"
@@ -183,9 +184,11 @@ void Flight::open() {
     signs_.enter(Call::start);
     make_stage();
     if (const std::string now = plugin_checksum(); now != result_.plugin_checksum) {
+        // Which of the two was opened nobody knows: the cell has none.
+        const std::string before = std::exchange(result_.plugin_checksum, "");
         throw MethodFailure(
             fmt::format("plugin {} changed while it was opened: its checksum was {} and is {}",
-                        spec_.plugin.string(), result_.plugin_checksum, now));
+                        spec_.plugin.string(), before, now));
     }
     const gl::DeviceInfo& info = stage_->device().info();
     result_.gl_vendor = info.vendor;
@@ -466,6 +469,7 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
         result.status = CellStatus::failed;
         result.reason = error.what() + where();
     }
+    flight.reset();  // what the method does while it is destroyed is warned of as well
     // A plugin's words may hold anything; a reason is one line.
     std::ranges::replace_if(
         result.reason, [](unsigned char c) { return c < 0x20; }, ' ');

@@ -58,8 +58,13 @@ struct sigaction handler_of(int number) {
     return action;
 }
 
+/// Flags mean something to a function only; the system adds one of its own when it is told one.
 bool same_handler(const struct sigaction& a, const struct sigaction& b) {
-    return a.sa_handler == b.sa_handler && a.sa_flags == b.sa_flags;
+    constexpr int kTold = SA_NOCLDSTOP | SA_NOCLDWAIT | SA_NODEFER | SA_ONSTACK | SA_RESETHAND |
+                          SA_RESTART | SA_SIGINFO;
+    if (a.sa_handler != b.sa_handler) return false;
+    const bool is_function = a.sa_handler != SIG_DFL && a.sa_handler != SIG_IGN;
+    return !is_function || (a.sa_flags & kTold) == (b.sa_flags & kTold);
 }
 
 sigset_t thread_mask() {
@@ -184,16 +189,23 @@ std::vector<std::string> ProcessState::restore() const {
     return words;
 }
 
-std::string ProcessState::lowered_limit() const {
+std::string ProcessState::raise_limits() const {
+    std::string words;
     for (std::size_t i = 0; i < kLimits.size(); ++i) {
         rlimit limit{};
-        if (getrlimit(__rlimit_resource_t(kLimits[i].resource), &limit) != 0) continue;
+        const auto resource = __rlimit_resource_t(kLimits[i].resource);
+        if (getrlimit(resource, &limit) != 0) continue;
         if (limit.rlim_cur >= limits_[i]) continue;  // RLIM_INFINITY is the greatest number
-        return fmt::format(
-            "{}: {}, was {}", kLimits[i].name, limit.rlim_cur,
-            limits_[i] == RLIM_INFINITY ? "without limit" : std::to_string(limits_[i]));
+        if (words.empty()) {
+            words = fmt::format(
+                "{}: {}, was {}", kLimits[i].name, limit.rlim_cur,
+                limits_[i] == RLIM_INFINITY ? "without limit" : std::to_string(limits_[i]));
+        }
+        // The result has to be written. Beyond a lowered hard limit most users cannot go.
+        limit.rlim_cur = std::min(limits_[i], limit.rlim_max);
+        static_cast<void>(setrlimit(resource, &limit));
     }
-    return {};
+    return words;
 }
 
 bool ProcessState::restore_locale() const {

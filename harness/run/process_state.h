@@ -37,9 +37,9 @@ public:
     ProcessState();
     /// What has changed since, in words ("the locale"); puts it back, as far as the system lets.
     [[nodiscard]] std::vector<std::string> restore() const;
-    /// The first limit that is lower than it was: "open files: 0, was 1024"; "" where none is. A
-    /// lowered hard limit cannot be raised again by most users.
-    [[nodiscard]] std::string lowered_limit() const;
+    /// The first limit that is lower than it was, "open files: 0, was 1024", and raises it again as
+    /// far as the system lets; "" where none is.
+    [[nodiscard]] std::string raise_limits() const;
 
 private:
     struct Limit {

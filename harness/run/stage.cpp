@@ -10,6 +10,7 @@
 #include "api/error.h"
 #include "base/console.h"
 #include "base/hash.h"
+#include "base/printable.h"
 #include "gl/frame_blocks.h"
 #include "gl/state.h"
 
@@ -17,6 +18,7 @@ namespace lodbench::run {
 
 namespace {
 
+constexpr std::size_t kQuotedBytes = 1000;  // of what a method throws
 constexpr float kSky[] = {0.62F, 0.74F, 0.88F, 1.0F};
 
 }  // namespace
@@ -61,12 +63,16 @@ Stage::~Stage() {
     method_.reset();
     end_copies(name_of(Call::destroy));
     restore_process(name_of(Call::destroy));
+    for (const std::string& what : unplaced_) warn_once(what, "the timing replay");
     signs_.enter(Call::none);
 }
 
 void Stage::check_state(bool on) {
-    // What a replay without checks left is not the next call's.
-    if (on && !check_state_) restore_process("the timing replay");
+    // What a replay without checks left is not the next call's; which call does it, a replay with
+    // checks may show.
+    if (on && !check_state_) {
+        for (std::string& what : process_state_.restore()) unplaced_.insert(std::move(what));
+    }
     check_state_ = on;
 }
 
@@ -76,10 +82,12 @@ void Stage::restore_process(const char* where) {
 }
 
 void Stage::warn_of(const std::vector<std::string>& changed, const char* where) {
-    for (const std::string& what : changed) {
-        if (!warned_.insert(what).second || !setup_.warn) continue;
-        setup_.warn(fmt::format("left {} changed in {}", what, where));
-    }
+    for (const std::string& what : changed) warn_once(what, where);
+}
+
+void Stage::warn_once(const std::string& what, const char* where) {
+    if (!warned_.insert(what).second || !setup_.warn) return;
+    setup_.warn(fmt::format("left {} changed in {}", what, where));
 }
 
 /// A plugin that forks and comes back twice would have two processes write one result.
@@ -109,7 +117,7 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
     warn_of(modes_.restore(), name_of(call));
     if (check_state_) {
         warn_of(process_state_.restore(), name_of(call));
-        if (const std::string lowered = process_state_.lowered_limit(); !lowered.empty()) {
+        if (const std::string lowered = process_state_.raise_limits(); !lowered.empty()) {
             throw MethodFailure(fmt::format("{} of plugin {} lowered a limit of its process: {}",
                                             name_of(call), plugin_name_, lowered));
         }
@@ -142,10 +150,11 @@ void Stage::fail(Call call, const std::exception_ptr& thrown) const {
     try {
         std::rethrow_exception(thrown);
     } catch (const UnsupportedError& error) {
-        throw MethodSkipped(fmt::format("method '{}' cannot run here: {}", info_.id, error.what()));
+        throw MethodSkipped(fmt::format("method '{}' cannot run here: {}", info_.id,
+                                        base::shortened(error.what(), kQuotedBytes)));
     } catch (const std::exception& error) {
-        throw MethodFailure(
-            fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_, error.what()));
+        throw MethodFailure(fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_,
+                                        base::shortened(error.what(), kQuotedBytes)));
     } catch (...) {
         throw MethodFailure(
             fmt::format("{} of plugin {} threw something that is not a std::exception",

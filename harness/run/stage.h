@@ -124,6 +124,7 @@ private:
     [[noreturn]] void fail(Call call, const std::exception_ptr& thrown) const;
     void restore_process(const char* where);
     void warn_of(const std::vector<std::string>& changed, const char* where);
+    void warn_once(const std::string& what, const char* where);
     void end_copies(const char* where);
     void set_pipeline_state();
     void fill_blocks(const View& view, bool wireframe);
@@ -137,7 +138,8 @@ private:
     pid_t process_;
     FloatModes modes_;  // as they were before the plugin was opened
     ProcessState process_state_;
-    std::set<std::string> warned_;
+    std::set<std::string> warned_,
+        unplaced_;  // what was left changed, and of that by no known call
     std::unique_ptr<platform::Context> context_;
     std::unique_ptr<gl::Device> device_;
     PluginLibrary library_;
