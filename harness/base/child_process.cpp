@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,15 +14,26 @@ extern "C" {  // glibc 2.36 forgets to say so
 #include <sys/pidfd.h>
 }
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
+#include <new>
 #include <utility>
 
 #include "api/error.h"
 #include "base/console.h"
+#include "base/process_tree.h"
 
 namespace lodbench::base {
+
+namespace {
+
+constexpr auto kKeeperGrace = std::chrono::seconds(10);  // to kill and reap what a child left
+
+}  // namespace
 
 FileDescriptor::~FileDescriptor() {
     close();
@@ -92,55 +104,196 @@ std::string ChildEnding::words() const {
     return fmt::format("{} (signal {})", words, number);
 }
 
+/// What the keeper tells: a page that it shares with the process that made it.
+struct ChildProcess::Note {
+    std::atomic<pid_t> child{0};
+    std::atomic<int> fork_error{0};
+    std::atomic<int> left_behind{0};  ///< number of processes
+    char names[512] = {};             ///< theirs, as many as find room
+};
+
+namespace {
+
+/// The keeper's work, which never allocates more than a list of processes.
+class Keeper {
+public:
+    explicit Keeper(pid_t parent) {
+        setpgid(0, 0);  // what is sent to the child's group, or to ours, is not for the keeper
+        prctl(PR_SET_CHILD_SUBREAPER, 1);
+        sigemptyset(&awaited_);
+        sigaddset(&awaited_, SIGCHLD);
+        sigaddset(&awaited_, SIGTERM);
+        sigprocmask(SIG_BLOCK, &awaited_, &before_);
+        signal(SIGTERM, SIG_DFL);  // one that is ignored would never be heard
+        prctl(PR_SET_PDEATHSIG, SIGTERM);
+        // The parent may have died before the line above took effect.
+        if (getppid() != parent) _exit(1);
+    }
+
+    /// In the child: nothing of the keeper's is left.
+    void forget() const {
+        signal(SIGPIPE, SIG_DFL);  // for plugins, and for what they start
+        sigprocmask(SIG_SETMASK, &before_, nullptr);
+    }
+
+    /// Waits until the child ends by itself; false where it is to be ended.
+    bool await(pid_t child) {
+        child_ = child;
+        for (;;) {
+            reap();
+            if (child_ended_) return true;
+            if (sigwaitinfo(&awaited_, nullptr) == SIGTERM) return false;
+        }
+    }
+
+    /// Kills children until there is none: those of a child that dies are the keeper's next.
+    void end_all() {
+        const timespec pause{0, 1'000'000};
+        while (reap()) {
+            for (const pid_t process : children_of(getpid())) kill(process, SIGKILL);
+            nanosleep(&pause, nullptr);
+        }
+    }
+
+    /// Ends this process as the child ended.
+    [[noreturn]] void end_alike() const {
+        if (WIFSIGNALED(status_)) {
+            const rlimit no_core{0, 0};
+            setrlimit(RLIMIT_CORE, &no_core);
+            const int number = WTERMSIG(status_);
+            signal(number, SIG_DFL);
+            sigset_t set;
+            sigemptyset(&set);
+            sigaddset(&set, number);
+            sigprocmask(SIG_UNBLOCK, &set, nullptr);
+            raise(number);
+        }
+        _exit(WEXITSTATUS(status_));
+    }
+
+private:
+    /// Takes leave of those that have ended; false when there is no other child.
+    bool reap() {
+        for (;;) {
+            int status = 0;
+            const pid_t process = waitpid(-1, &status, WNOHANG);
+            if (process < 0 && errno == EINTR) continue;
+            if (process <= 0) return process == 0;
+            if (process == child_) {
+                child_ended_ = true;
+                status_ = status;
+            }
+        }
+    }
+
+    sigset_t awaited_{}, before_{};
+    pid_t child_ = -1;
+    bool child_ended_ = false;
+    int status_ = 0;
+};
+
+/// Where SIGCHLD is ignored, as by some who start us, the system takes children away before anyone
+/// has waited for them.
+void heed_children() {
+    struct sigaction action {};
+    sigaction(SIGCHLD, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) signal(SIGCHLD, SIG_DFL);
+}
+
+int run_body(const std::function<int()>& body) {
+    try {
+        return body();
+    } catch (const std::exception& error) {
+        tell("{}", error.what());
+    }
+    return 1;
+}
+
+/// How many processes run below this one, and their names.
+int note_descendants(char* names, std::size_t size) {
+    int count = 0;
+    std::string text;
+    for (const pid_t process : descendants_of(getpid())) {
+        if (has_ended(process)) continue;
+        text += (count++ == 0 ? "" : ", ") + command_name(process);
+    }
+    text.copy(names, size - 1);
+    return count;
+}
+
+}  // namespace
+
 ChildProcess::ChildProcess(const std::function<int()>& body) {
+    void* page =
+        mmap(nullptr, sizeof(Note), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (page == MAP_FAILED) {
+        throw EnvironmentError(fmt::format("cannot share memory: {}", std::strerror(errno)));
+    }
+    note_ = new (page) Note;
+    heed_children();
     // What is buffered here must not be written twice.
     std::fflush(nullptr);
     const pid_t parent = getpid();
-    pid_ = fork();
-    if (pid_ < 0) {
-        throw EnvironmentError(fmt::format("cannot start a process: {}", std::strerror(errno)));
+    keeper_ = fork();
+    if (keeper_ < 0) {
+        const int error = errno;
+        munmap(note_, sizeof(Note));
+        throw EnvironmentError(fmt::format("cannot start a process: {}", std::strerror(error)));
     }
-    if (pid_ == 0) {
-        setpgid(0, 0);
-        prctl(PR_SET_PDEATHSIG, SIGKILL);
-        signal(SIGPIPE, SIG_DFL);  // for plugins, and for what they start
-        // The parent may have died before the line above took effect.
-        if (getppid() != parent) _exit(1);
-        int status = 1;
-        try {
-            status = body();
-        } catch (const std::exception& error) {
-            tell("{}", error.what());
+    if (keeper_ == 0) {
+        Keeper keeper(parent);
+        const pid_t self = getpid();
+        const pid_t child = fork();
+        if (child < 0) {
+            note_->fork_error = errno;
+            _exit(1);
         }
-        std::fflush(nullptr);
-        _exit(status);
+        if (child == 0) {
+            setpgid(0, 0);
+            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            if (getppid() != self) _exit(1);
+            keeper.forget();
+            const int status = run_body(body);
+            std::fflush(nullptr);
+            _exit(status);
+        }
+        note_->child = child;
+        if (keeper.await(child))
+            note_->left_behind = note_descendants(note_->names, sizeof note_->names);
+        keeper.end_all();
+        keeper.end_alike();
     }
-    setpgid(pid_, pid_);  // in both, since either may run first
-    ended_ = FileDescriptor(pidfd_open(pid_, 0));
+    ended_ = FileDescriptor(pidfd_open(keeper_, 0));
 }
 
 ChildProcess::~ChildProcess() {
-    if (!reaped_) {
-        kill_group();
-        int status = 0;
-        while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-        }
-    }
+    end();
+    munmap(note_, sizeof(Note));
+}
+
+pid_t ChildProcess::pid() const {
+    return note_->child;
+}
+
+std::vector<pid_t> ChildProcess::processes() const {
+    return descendants_of(keeper_);
+}
+
+std::string ChildProcess::left_behind() const {
+    const int count = note_->left_behind;
+    if (count == 0) return {};
+    return fmt::format("left {} process{} behind, which {} ended: {}", count,
+                       count == 1 ? "" : "es", count == 1 ? "was" : "were",
+                       std::string_view(note_->names));
 }
 
 bool ChildProcess::reap() {
     if (reaped_) return true;
     int status = 0;
     pid_t got = 0;
-    // The id belongs to the child until it is reaped: kill what it left behind in its group before
-    // that.
-    siginfo_t info{};
-    if (waitid(P_PID, id_t(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == 0)
-        return false;
-    kill_group();
-    while ((got = waitpid(pid_, &status, 0)) < 0 && errno == EINTR) {
+    while ((got = waitpid(keeper_, &status, WNOHANG)) < 0 && errno == EINTR) {
     }
-    if (got != pid_) return false;
+    if (got != keeper_) return false;
     reaped_ = true;
     ending_.by_signal = WIFSIGNALED(status);
     ending_.number = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
@@ -148,6 +301,14 @@ bool ChildProcess::reap() {
 }
 
 bool ChildProcess::wait(std::chrono::milliseconds time, int readable) {
+    if (!await(time, readable)) return false;
+    if (const int error = note_->fork_error) {
+        throw EnvironmentError(fmt::format("cannot start a process: {}", std::strerror(error)));
+    }
+    return true;
+}
+
+bool ChildProcess::await(std::chrono::milliseconds time, int readable) {
     // Kernels before 5.3 have no pidfd: then a short nap stands in for it.
     const int limit = ended_ ? int(time.count()) : int(std::min<std::int64_t>(time.count(), 5));
     pollfd watched[2] = {{ended_.number(), POLLIN, 0}, {readable, POLLIN, 0}};
@@ -155,8 +316,18 @@ bool ChildProcess::wait(std::chrono::milliseconds time, int readable) {
     return reap();
 }
 
-void ChildProcess::kill_group() {
-    if (!reaped_) ::kill(-pid_, SIGKILL);
+void ChildProcess::end() {
+    if (reaped_) return;
+    kill(keeper_, SIGTERM);
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + kKeeperGrace;
+    while (Clock::now() < deadline) {
+        if (await(std::chrono::milliseconds(50))) return;
+    }
+    // The child has stopped its keeper, it seems; with the keeper the child dies.
+    kill(keeper_, SIGKILL);
+    while (!await(std::chrono::milliseconds(50))) {
+    }
 }
 
 }  // namespace lodbench::base

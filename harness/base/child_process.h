@@ -45,32 +45,48 @@ struct ChildEnding {
     [[nodiscard]] std::string words() const;
 };
 
-/// A child in a process group of its own. Dies with the parent (PR_SET_PDEATHSIG); destroyed, it is
-/// killed with its group and reaped.
+/// A child and all that it starts, which ends when the child does.
+///
+/// Between this process and the child stands a keeper: a fork that is the reaper of whatever the
+/// child's descendants leave without a parent (PR_SET_CHILD_SUBREAPER), so that neither `setsid`
+/// nor a double fork leads out. When the child has ended, when `end` is called and when this
+/// process dies, the keeper kills and reaps all that is left, and ends as the child did.
 class ChildProcess {
 public:
-    /// Runs `body` in a fork of this process and ends it with its result, without exit handlers.
-    /// Throws EnvironmentError.
+    /// Runs `body` in a fork and ends it with its result, without exit handlers. Throws
+    /// EnvironmentError.
     explicit ChildProcess(const std::function<int()>& body);
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
-    /// Waits until the child ends, `readable` (a descriptor, or -1) has data, or the time is over.
-    /// True once the child has ended.
+    /// Waits until child and descendants have ended, `readable` (a descriptor, or -1) has data, or
+    /// the time is over. True once they have ended. Throws EnvironmentError where the child could
+    /// not be started.
     bool wait(std::chrono::milliseconds time, int readable = -1);
-    void kill_group();
-    [[nodiscard]] pid_t pid() const { return pid_; }
+    /// Kills child and descendants and waits for their end.
+    void end();
+    /// 0 until it runs.
+    [[nodiscard]] pid_t pid() const;
+    /// The child and all that it started, directly or not, as far as they run.
+    [[nodiscard]] std::vector<pid_t> processes() const;
     [[nodiscard]] const ChildEnding& ending() const {
         return ending_;
     }  ///< valid once wait() gave true
+    /// What the child's end left running, and was killed: "left 2 processes behind, which were
+    /// ended: sh, sleep"; "" for nothing, or where `end` was called before. Valid once wait() gave
+    /// true.
+    [[nodiscard]] std::string left_behind() const;
 
 private:
+    struct Note;
     bool reap();
-    pid_t pid_ = -1;
-    FileDescriptor ended_;  // pidfd: readable once the child has ended
+    bool await(std::chrono::milliseconds time, int readable = -1);
+    pid_t keeper_ = -1;
+    FileDescriptor ended_;  // pidfd of the keeper: readable once it has ended
     bool reaped_ = false;
     ChildEnding ending_;
+    Note* note_ = nullptr;  // shared with the keeper
 };
 
 }  // namespace lodbench::base

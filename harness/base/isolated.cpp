@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "api/error.h"
 #include "base/child_process.h"
@@ -13,6 +14,8 @@
 namespace lodbench::base {
 
 namespace {
+
+constexpr auto kWatchInterval = std::chrono::milliseconds(200);
 
 // What the child writes: one letter for the ending, the text, and a full stop that tells a whole
 // answer from one that was cut short.
@@ -34,7 +37,8 @@ std::string answer_of(const std::function<std::string()>& work) {
 
 }  // namespace
 
-Answer run_isolated(double seconds, const std::function<std::string()>& work) {
+Answer run_isolated(double seconds, const std::function<std::string()>& work,
+                    const std::function<std::string()>& watch) {
     const FileDescriptor file = memory_file("lodbench: answer");
     ChildProcess child([&] {
         // A crash on purpose (or not) should leave a line in the report, not a core file.
@@ -51,7 +55,11 @@ Answer run_isolated(double seconds, const std::function<std::string()>& work) {
         if (left.count() <= 0) {
             return {Ending::timed_out, fmt::format("gave no answer within {:g} s", seconds)};
         }
-        ended = child.wait(std::min(left, std::chrono::milliseconds(1000)));
+        ended = child.wait(std::min(left, kWatchInterval));
+        if (ended || !watch) continue;
+        if (std::string words = watch(); !words.empty()) {
+            return {Ending::timed_out, std::move(words)};
+        }
     }
     const std::string text = read_all(file);
     // A child that answers and dies on its way out (a plugin's thread, say) has not kept its

@@ -22,9 +22,12 @@ struct Answer {
     int signal = 0;  ///< that ended the child where it died of one
 };
 
-/// Runs `work` in a forked child for at most `seconds` and returns what it answered. Must be called
-/// while this process has one thread and no GL context: a child of a threaded process may only use
-/// what is safe in a signal handler. Throws EnvironmentError when no child can be made.
-[[nodiscard]] Answer run_isolated(double seconds, const std::function<std::string()>& work);
+/// Runs `work` in a forked child for at most `seconds` and returns what it answered. `watch` is
+/// asked some times a second, in this process: a text from it ends the work (`timed_out`, with the
+/// text). Must be called while this process has one thread and no GL context: a child of a threaded
+/// process may only use what is safe in a signal handler. Throws EnvironmentError when no child can
+/// be made.
+[[nodiscard]] Answer run_isolated(double seconds, const std::function<std::string()>& work,
+                                  const std::function<std::string()>& watch = {});
 
 }  // namespace lodbench::base

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "run/exit_status.h"
 #include "run/locations.h"
 #include "run/mesh_export.h"
+#include "run/shared_signs.h"
 #include "run/stage.h"
 #include "scenario/scenario.h"
 #include "terrain/open_terrain.h"
@@ -31,6 +33,7 @@ struct MeshOptions {
     std::vector<std::string> settings;
     std::vector<std::filesystem::path> plugin_dirs;
     int frame = 0;
+    std::optional<double> time_limit_s;
     scenario::Overrides overrides;
     bool before_clipping = false;
     bool json = false;
@@ -90,18 +93,19 @@ std::string text_of(const ParamValue& value) {
 /// Flies to the frame in lockstep, as a method may keep state from frame to frame, and writes the
 /// file. Returns what is to be printed.
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
-                        const run::MethodInfo& method, const run::Settings& settings) {
+                        const run::MethodInfo& method, const run::Settings& settings,
+                        run::VitalSigns& signs) {
     terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(scenario.terrain);
     tell_warnings(opened.terrain->info(), opened.provenance);
     const std::shared_ptr<const Terrain> terrain = std::move(opened.terrain);
     const auto path =
         scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
-    run::VitalSigns signs;
     run::Stage stage({.terrain = terrain,
                       .plugin = method.plugin,
                       .method = method.id,
                       .settings = settings,
-                      .device = options.device},
+                      .device = options.device,
+                      .warn = [](const std::string& words) { base::tell("warning: {}", words); }},
                      signs);
     stage.prepare();
     stage.upload();
@@ -162,9 +166,10 @@ int run_mesh(const MeshOptions& options) {
     const run::MethodInfo method =
         run::find_method(find_plugins(options.plugin_dirs), options.method, "mesh");
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
-    const base::Answer answer = base::run_isolated(scenario.cell_time_limit_s, [&] {
-        return export_mesh(options, scenario, method, settings);
-    });
+    const std::shared_ptr<run::VitalSigns> signs = run::map_signs();
+    const base::Answer answer = base::run_isolated(
+        options.time_limit_s.value_or(scenario.cell_time_limit_s),
+        [&] { return export_mesh(options, scenario, method, settings, *signs); });
     using base::Ending;
     switch (answer.ending) {
         case Ending::answered: base::print("{}\n", answer.text); return run::kAllWell;
@@ -174,8 +179,10 @@ int run_mesh(const MeshOptions& options) {
         case Ending::died:
         case Ending::timed_out: break;
     }
-    base::tell("lodbench: the process that flew '{}' of plugin {} {}", method.id,
-               method.plugin.string(), answer.text);
+    const run::Call call = signs->call.load();
+    base::tell("lodbench: the process that flew '{}' of plugin {} {}{}", method.id,
+               method.plugin.string(), answer.text,
+               call == run::Call::none ? "" : fmt::format(", in {}", run::name_of(call)));
     return run::kCellFailed;
 }
 
@@ -199,6 +206,9 @@ void add_mesh(CLI::App& app, int& status) {
                      "number of frames over which the path is spread")
         ->check(CLI::PositiveNumber);
     add_size(*command, options->overrides.viewport);
+    add_time_limit(
+        *command, options->time_limit_s,
+        "of the flight to that frame, seconds; as the scenario's cell_time_limit_s says");
     add_device(*command, options->device);
     add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--before-clipping", options->before_clipping,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "api/error.h"
 
@@ -43,6 +44,24 @@ void add_size(CLI::App& command, std::optional<Viewport>& size) {
             "--size", [&size](const std::string& text) { size = parse_size(text); },
             "viewport in pixels, as 640x480")
         ->type_name("WIDTHxHEIGHT");
+}
+
+CLI::Validator finite_and_positive(const std::string& what) {
+    return {[what](std::string& text) {
+                double value = 0;
+                const char* end = text.data() + text.size();
+                const auto read = std::from_chars(text.data(), end, value);
+                const bool good =
+                    read.ec == std::errc() && read.ptr == end && std::isfinite(value) && value > 0;
+                return good ? std::string()
+                            : fmt::format("{} is {}: expected a finite number above 0", what, text);
+            },
+            "POSITIVE"};
+}
+
+void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& help) {
+    command.add_option("--time-limit", seconds, "limit " + help)
+        ->check(finite_and_positive("the limit"));
 }
 
 CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {

@@ -31,6 +31,11 @@ void add_size(CLI::App& command, std::optional<Viewport>& size);
 /// read.
 CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help);
 
+/// A positive number that is finite; nan and inf pass CLI11's own check.
+[[nodiscard]] CLI::Validator finite_and_positive(const std::string& what);
+/// --time-limit, seconds.
+void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& help);
+
 /// What is found in `plugin_dirs` and in the usual folders.
 [[nodiscard]] std::vector<run::PluginListing> find_plugins(
     const std::vector<std::filesystem::path>& plugin_dirs);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "run/plugin_library.h"
+#include "run/vital_signs.h"
 
 namespace lodbench::conformance {
 
@@ -19,6 +21,8 @@ struct Subject {
     run::Settings settings;
     std::string device;  ///< as for platform::Context
     std::uint64_t seed = 1;
+    /// Where each call of the method is told; shared with whoever watches.
+    std::shared_ptr<run::VitalSigns> signs = std::make_shared<run::VitalSigns>();
 };
 
 /// The method does not keep its promise: what was seen, with frame or camera, and what was

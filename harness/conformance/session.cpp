@@ -117,7 +117,7 @@ Clock clock_of(int frame) {
 
 Session::Session(const Subject& subject, TerrainPointer terrain, const Settings& settings,
                  const Viewport& viewport)
-    : signs_(std::make_unique<run::VitalSigns>()) {
+    : signs_(subject.signs) {
     run::StageSetup setup{.terrain = std::move(terrain),
                           .plugin = subject.method.plugin,
                           .method = subject.method.id,

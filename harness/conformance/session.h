@@ -82,7 +82,7 @@ public:
     [[nodiscard]] std::uint64_t triangles_through(const View& view);
 
 private:
-    std::unique_ptr<run::VitalSigns> signs_;
+    std::shared_ptr<run::VitalSigns> signs_;
     std::unique_ptr<run::Stage> stage_;
 };
 

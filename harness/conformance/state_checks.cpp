@@ -128,15 +128,17 @@ void descriptor_is_sane(const Subject& subject) {
 }
 
 void pipeline_state_is_restored(const Subject& subject) {
-    run::VitalSigns signs;
-    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    std::string left;
+    run::StageSetup setup = setup_of(subject, ridged_terrain());
+    setup.warn = [&](const std::string& words) { left += (left.empty() ? "" : "; ") + words; };
+    run::Stage stage(std::move(setup), *subject.signs);
     stage.check_state(true);
     fly_every_call(stage, subject, [](const char*) {});
+    if (!left.empty()) throw PromiseBroken(left);
 }
 
 void no_gl_errors(const Subject& subject) {
-    run::VitalSigns signs;
-    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    run::Stage stage(setup_of(subject, ridged_terrain()), *subject.signs);
     // The stage hears the driver's debug messages; the error flag is asked besides, as a plugin can
     // turn the messages off.
     fly_every_call(stage, subject, [](const char* call) {
@@ -148,17 +150,15 @@ void no_gl_errors(const Subject& subject) {
 }
 
 void objects_are_given_back(const Subject& subject) {
-    run::VitalSigns signs;
-    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    run::Stage stage(setup_of(subject, ridged_terrain()), *subject.signs);
     const Inventory inventory(stage);
     fly_every_call(stage, subject, [](const char*) {});
     inventory.require_restored(1, "after release");
 }
 
 void release_without_frames(const Subject& subject) {
-    run::VitalSigns signs;
-    { const run::Stage created_only(setup_of(subject, ridged_terrain()), signs); }
-    run::Stage stage(setup_of(subject, ridged_terrain()), signs);
+    { const run::Stage created_only(setup_of(subject, ridged_terrain()), *subject.signs); }
+    run::Stage stage(setup_of(subject, ridged_terrain()), *subject.signs);
     const Inventory inventory(stage);
     stage.prepare();
     stage.upload();

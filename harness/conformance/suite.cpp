@@ -7,6 +7,7 @@
 
 #include "api/error.h"
 #include "base/isolated.h"
+#include "run/shared_signs.h"
 #include "run/stage.h"
 
 namespace lodbench::conformance {
@@ -96,12 +97,23 @@ const Check& find_check(const std::string& name) {
     throw InputError(fmt::format("no test is called '{}'; there are {}", name, names));
 }
 
-CheckReport run_check(const Check& check, const Subject& subject, double time_factor) {
+CheckReport run_check(const Check& check, const Subject& subject, double time_limit_s) {
     const auto start = std::chrono::steady_clock::now();
-    const base::Answer answer =
-        base::run_isolated(check.time_limit_s * time_factor, [&] { return judge(check, subject); });
+    Subject watched = subject;
+    watched.signs = run::map_signs();
+    const double call_limit_s = 0.5 * time_limit_s;
+    run::HangWatch watch(watched.signs, call_limit_s);
     CheckReport report;
     report.check = check.name;
+    const base::Answer answer = base::run_isolated(
+        time_limit_s, [&] { return judge(check, watched); },
+        [&] {
+            const run::Call call = watch.hung_in();
+            if (call == run::Call::none) return std::string();
+            report.hung_in = run::name_of(call);
+            return fmt::format("hung in {}: it did not come back within {:g} s", report.hung_in,
+                               call_limit_s);
+        });
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report.reason = answer.text;

@@ -24,8 +24,10 @@ namespace {
     const char* remedy = full              ? "make room there, or choose another place with --out"
                          : error == ENOENT ? "does its folder exist?"
                                            : "is it the right place?";
-    throw EnvironmentError(
-        fmt::format("cannot {} {}: {}; {}", what, path.string(), std::strerror(error), remedy));
+    const std::string words =
+        fmt::format("cannot {} {}: {}; {}", what, path.string(), std::strerror(error), remedy);
+    if (full) throw DiskFullError(words);
+    throw EnvironmentError(words);
 }
 
 /// An open file that is closed on the way out.

@@ -7,17 +7,24 @@
 #include <string_view>
 #include <vector>
 
+#include "api/error.h"
+
 namespace lodbench::report {
 
 inline constexpr int kSchemaVersion = 1;
 
+/// The disk, the quota or the limit of a file's size is used up (ENOSPC, EDQUOT, EFBIG).
+struct DiskFullError : EnvironmentError {
+    using EnvironmentError::EnvironmentError;
+};
+
 /// Writes `text` to a temporary file in the same folder, syncs it and renames it over `path`.
-/// Throws EnvironmentError naming the file and the system's words (a full disk); `path` is then as
-/// it was.
+/// Throws EnvironmentError naming the file and the system's words, DiskFullError where there is no
+/// room; `path` is then as it was.
 void write_whole(const std::filesystem::path& path, std::string_view text);
 
 /// Appends one line (without its newline) to a JSON-lines file with a single write, synced; on
-/// failure the file is truncated back to what it was and EnvironmentError thrown.
+/// failure the file is truncated back to what it was and EnvironmentError or DiskFullError thrown.
 void append_line(const std::filesystem::path& path, std::string_view line);
 
 /// All of a file. Throws EnvironmentError with its name and the system's words.

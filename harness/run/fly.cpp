@@ -7,14 +7,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <new>
-#include <string_view>
 #include <thread>
+#include <utility>
 
 #include "base/hash.h"
 #include "base/modules.h"
@@ -103,11 +101,13 @@ public:
 
     /// True once the plugin was opened: what fails in this process from then on may be its doing.
     [[nodiscard]] bool plugin_opened() const {
-        return stage_ != nullptr || signs_.call.load() >= Call::open_plugin;
+        return opened_ || signs_.call.load() >= Call::open_plugin;
     }
 
 private:
     void open();
+    [[nodiscard]] std::string plugin_checksum() const;
+    void warn(std::string words);
     void make_stage();
     void prepare();
     void choose_frames();
@@ -163,7 +163,15 @@ private:
     std::string timing_hash_;
     Replay replay_ = Replay::none;
     int frame_ = 0;
+    bool opened_ = false;
 };
+
+/// Each warning once: a method that is made anew for another replay does the same again.
+void Flight::warn(std::string words) {
+    if (std::ranges::find(result_.warnings, words) == result_.warnings.end()) {
+        result_.warnings.push_back(std::move(words));
+    }
+}
 
 void Flight::open() {
     signs_.enter(Call::load_terrain);
@@ -175,15 +183,18 @@ void Flight::open() {
     // Known before an hour's flight, not after.
     if (stored && measures_truth()) terrain::require_room_for_whole(terrain_->info());
     path_ = scenario::make_path(scenario_.path, scenario_.frames, scenario_.rate_hz, *terrain_);
-    try {
-        result_.plugin_checksum = file_checksum(spec_.plugin);
-    } catch (const std::exception& error) {
-        throw MethodFailure(error.what());  // it was there when it was listed
-    }
+    result_.plugin_checksum = plugin_checksum();
     result_.terrain_name = terrain_->info().name;
     result_.terrain_checksum = terrain_->info().checksum;
     signs_.enter(Call::start);
     make_stage();
+    if (const std::string now = plugin_checksum(); now != result_.plugin_checksum) {
+        // Which of the two was opened nobody knows: the cell has none.
+        const std::string before = std::exchange(result_.plugin_checksum, "");
+        throw MethodFailure(
+            fmt::format("plugin {} changed while it was opened: its checksum was {} and is {}",
+                        spec_.plugin.string(), before, now));
+    }
     const gl::DeviceInfo& info = stage_->device().info();
     result_.gl_vendor = info.vendor;
     result_.gl_renderer = info.renderer;
@@ -202,11 +213,26 @@ void Flight::open() {
     result_.timer_verdict = verdict_.text;
 }
 
+/// Of the file as it is now: 16 hex digits. It was there when it was listed.
+std::string Flight::plugin_checksum() const {
+    try {
+        return file_checksum(spec_.plugin);
+    } catch (const EnvironmentError& error) {
+        throw MethodFailure(error.what());
+    }
+}
+
 void Flight::make_stage() {
     stage_.reset();  // one context at a time
     stage_ = std::make_unique<Stage>(
-        StageSetup{methods_terrain_, spec_.plugin, spec_.method, spec_.settings, spec_.device},
+        StageSetup{.terrain = methods_terrain_,
+                   .plugin = spec_.plugin,
+                   .method = spec_.method,
+                   .settings = spec_.settings,
+                   .device = spec_.device,
+                   .warn = [this](std::string words) { warn(std::move(words)); }},
         signs_);
+    opened_ = true;
     stage_->check_state(true);
 }
 
@@ -418,6 +444,16 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
     CellResult result;
     std::unique_ptr<Flight> flight;
     const auto where = [&] { return flight ? flight->where() : std::string(); };
+    // Descriptors, limits and the plugin's own file are the plugin's to spoil; what was asked for
+    // had been checked before the plugin was opened.
+    const auto blame = [&](const char* words, std::string& else_of) {
+        if (flight && flight->plugin_opened()) {
+            result.status = CellStatus::failed;
+            result.reason = words + where();
+        } else {
+            else_of = words;
+        }
+    };
     try {
         flight = std::make_unique<Flight>(spec, signs, result);
         flight->fly();
@@ -431,19 +467,12 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
         // terrain's, and other cells may fly another.
         result.status = CellStatus::failed;
         result.reason = fmt::format("reading the terrain: {}{}", error.what(), where());
+    } catch (const report::DiskFullError& error) {
+        result.environment_error = error.what();  // no plugin's to spoil
     } catch (const EnvironmentError& error) {
-        // Descriptors and limits are the plugin's to spoil, a full disk is not.
-        const std::string_view what = error.what();
-        const bool disk_full = what.find(std::strerror(ENOSPC)) != what.npos ||
-                               what.find(std::strerror(EDQUOT)) != what.npos;
-        if (flight && flight->plugin_opened() && !disk_full) {
-            result.status = CellStatus::failed;
-            result.reason = error.what() + where();
-        } else {
-            result.environment_error = error.what();
-        }
+        blame(error.what(), result.environment_error);
     } catch (const InputError& error) {
-        result.input_error = error.what();
+        blame(error.what(), result.input_error);
     } catch (const std::bad_alloc&) {
         result.status = CellStatus::failed;
         result.reason = "memory ran out" + where();
@@ -451,6 +480,7 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
         result.status = CellStatus::failed;
         result.reason = error.what() + where();
     }
+    flight.reset();  // what the method does while it is destroyed is warned of as well
     // A plugin's words may hold anything; a reason is one line.
     std::ranges::replace_if(
         result.reason, [](unsigned char c) { return c < 0x20; }, ' ');

@@ -15,6 +15,7 @@
 #include "api/error.h"
 #include "base/child_process.h"
 #include "report/json.h"
+#include "run/last_words.h"
 #include "run/loader_log.h"
 #include "run/locations.h"
 #include "run/plugin_library.h"
@@ -26,7 +27,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr rlim_t kOutputLimit = 1 << 20;  // bytes of what a plugin prints while it is listed
-constexpr std::size_t kQuotedOutput = 200;
 
 Json::Value to_json(const ParamInfo& param) {
     Json::Value json;
@@ -120,17 +120,6 @@ int tell(const fs::path& plugin, int listing, int output) {
     return base::write_all(listing, report::to_text(json)) ? 0 : 1;
 }
 
-/// The last line that a plugin printed, for the refusal.
-std::string last_words(const base::FileDescriptor& output) {
-    std::string text = base::read_all(output);
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-    const std::size_t line = text.find_last_of('\n');
-    if (line != text.npos) text.erase(0, line + 1);
-    std::erase_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
-    if (text.size() > kQuotedOutput) text.resize(kQuotedOutput);
-    return text.empty() ? "" : fmt::format(" (its last words: '{}')", text);
-}
-
 /// An id belongs to the earliest folder that holds it. Two holders in that folder are both refused,
 /// for nothing tells which is meant. `folder_of` numbers the folder of each listing.
 void refuse_duplicates(std::vector<PluginListing>& listings,
@@ -188,17 +177,17 @@ PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time
     const auto deadline = std::chrono::steady_clock::now() + time_limit;
     while (!child.wait(std::chrono::milliseconds(50))) {
         if (std::chrono::steady_clock::now() < deadline) continue;
-        child.kill_group();
+        child.end();
         return refuse(
             fmt::format("it did not load within {} s{}; a constructor that runs while it is "
                         "loaded does not end",
-                        double(time_limit.count()) / 1000, last_words(output)));
+                        double(time_limit.count()) / 1000, last_words(base::read_all(output))));
     }
     const std::string text = base::read_all(listing);
     if (!child.ending().well() || text.empty()) {
         return refuse(
             fmt::format("while it was loaded: {}{}; look at the constructors that run then",
-                        child.ending().words(), last_words(output)));
+                        child.ending().words(), last_words(base::read_all(output))));
     }
     try {
         const Json::Value json = report::parse_json(text, plugin.string());

@@ -1,12 +1,14 @@
 #include "run/stage.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
 #include <optional>
 
 #include "api/error.h"
+#include "base/console.h"
 #include "base/hash.h"
 #include "base/printable.h"
 #include "gl/frame_blocks.h"
@@ -25,13 +27,17 @@ Stage::Stage(StageSetup setup, VitalSigns& signs)
       served_(setup_.terrain),
       plugin_name_(setup_.plugin.filename().string()),
       signs_(signs),
+      process_(getpid()),
+      modes_(FloatModes::capture()),
       context_(std::make_unique<platform::Context>(setup_.device)),
       device_(std::make_unique<gl::Device>()),
       library_((signs.enter(Call::open_plugin), setup_.plugin)) {
-    signs_.enter(Call::none);
+    end_copies("a constructor");
+    restore_process("a constructor that runs while it is loaded");
     info_ = find_method({{setup_.plugin, library_.methods(), ""}}, setup_.method,
                         "plugin " + setup_.plugin.string());
     params_ = make_params(info_, setup_.settings, "settings of " + setup_.method);
+    signs_.enter(Call::none);  // not before: a plugin that was exchanged is at fault for the above
     for (const std::string& extension : info_.gl_extensions) {
         if (!device_->has_extension(extension)) {
             throw MethodSkipped(fmt::format("method '{}' needs {}, which {} does not have",
@@ -54,7 +60,42 @@ Stage::~Stage() {
     }
     signs_.enter(Call::destroy);
     method_.reset();
+    end_copies(name_of(Call::destroy));
+    restore_process(name_of(Call::destroy));
+    for (const std::string& what : unplaced_) warn_once(what, "the timing replay");
     signs_.enter(Call::none);
+}
+
+void Stage::check_state(bool on) {
+    // What a replay without checks left is not the next call's; which call does it, a replay with
+    // checks may show.
+    if (on && !check_state_) {
+        for (std::string& what : process_state_.restore()) unplaced_.insert(std::move(what));
+    }
+    check_state_ = on;
+}
+
+void Stage::restore_process(const char* where) {
+    warn_of(modes_.restore(), where);
+    warn_of(process_state_.restore(), where);
+}
+
+void Stage::warn_of(const std::vector<std::string>& changed, const char* where) {
+    for (const std::string& what : changed) warn_once(what, where);
+}
+
+void Stage::warn_once(const std::string& what, const char* where) {
+    if (!warned_.insert(what).second || !setup_.warn) return;
+    setup_.warn(fmt::format("left {} changed in {}", what, where));
+}
+
+/// A plugin that forks and comes back twice would have two processes write one result.
+void Stage::end_copies(const char* where) {
+    if (getpid() == process_) return;
+    base::tell("a copy of the process came back from {} of plugin {} and was ended", where,
+               plugin_name_);
+    signs_.copies.fetch_add(1);
+    _exit(0);
 }
 
 void Stage::guarded(Call call, const std::function<void()>& body) {
@@ -63,20 +104,23 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
     const std::uint64_t allocated = device_->allocated_bytes();
     const std::uint64_t uploaded = device_->uploaded_bytes();
     signs_.enter(call);
+    std::exception_ptr thrown;
     try {
         body();
-    } catch (const UnsupportedError& error) {
-        throw MethodSkipped(
-            fmt::format("method '{}' cannot run here: {}", info_.id, base::bounded(error.what())));
-    } catch (const std::exception& error) {
-        throw MethodFailure(fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_,
-                                        base::bounded(error.what())));
     } catch (...) {
-        throw MethodFailure(
-            fmt::format("{} of plugin {} threw something that is not a std::exception",
-                        name_of(call), plugin_name_));
+        thrown = std::current_exception();
     }
+    end_copies(name_of(call));
+    if (thrown) fail(call, thrown);
     signs_.enter(Call::none);
+    warn_of(modes_.restore(), name_of(call));
+    if (check_state_) {
+        warn_of(process_state_.restore(), name_of(call));
+        if (const std::string lowered = process_state_.raise_limits(); !lowered.empty()) {
+            throw MethodFailure(fmt::format("{} of plugin {} lowered a limit of its process: {}",
+                                            name_of(call), plugin_name_, lowered));
+        }
+    }
     allocated_bytes_ += std::int64_t(device_->allocated_bytes() - allocated);
     peak_bytes_ = std::max(peak_bytes_, allocated_bytes_);
     uploaded_bytes_ += device_->uploaded_bytes() - uploaded;
@@ -98,6 +142,22 @@ void Stage::guarded(Call call, const std::function<void()>& body) {
                                             name_of(call), plugin_name_,
                                             fmt::join(differences, "; ")));
         }
+    }
+}
+
+void Stage::fail(Call call, const std::exception_ptr& thrown) const {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const UnsupportedError& error) {
+        throw MethodSkipped(
+            fmt::format("method '{}' cannot run here: {}", info_.id, base::bounded(error.what())));
+    } catch (const std::exception& error) {
+        throw MethodFailure(fmt::format("{} of plugin {} threw: {}", name_of(call), plugin_name_,
+                                        base::bounded(error.what())));
+    } catch (...) {
+        throw MethodFailure(
+            fmt::format("{} of plugin {} threw something that is not a std::exception",
+                        name_of(call), plugin_name_));
     }
 }
 

@@ -3,10 +3,12 @@
 // through here.
 
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "measure/capture.h"
 #include "platform/context.h"
 #include "run/plugin_library.h"
+#include "run/process_state.h"
 #include "run/reference_picture.h"
 #include "run/served_terrain.h"
 #include "run/vital_signs.h"
@@ -42,12 +45,16 @@ struct StageSetup {
     std::string method;
     Settings settings;
     std::string device;  ///< as for platform::Context
+    /// Is told what a call left changed in the process, "left the locale changed in select", once
+    /// for each thing; it was put back. May be empty.
+    std::function<void(std::string)> warn = {};
 };
 
 /// Owns context, device, plugin and method, the two uniform blocks and the picture's framebuffer.
 /// The calls follow `Method`: prepare, upload, resize, then select and draw in any number, release.
 /// Each call of the method that throws, raises a GL error, or (while checking) leaves the pipeline
-/// state changed ends in MethodFailure.
+/// state changed or a limit of the process lowered ends in MethodFailure. A copy of the process
+/// that comes back from a call (fork) is ended there.
 class Stage {
 public:
     Stage(StageSetup setup, VitalSigns& signs);
@@ -89,8 +96,9 @@ public:
     /// 16 hex digits over them.
     [[nodiscard]] std::string depth_hash();
 
-    /// Compare the pipeline state around every call of the method (not in the timing replay).
-    void check_state(bool on) { check_state_ = on; }
+    /// Compare the pipeline state around every call of the method, and the process's after it (not
+    /// in the timing replay, whose floating-point modes alone are watched).
+    void check_state(bool on);
 
     /// Bytes that the method's own calls allocated on the GPU at their peak (seen after each call)
     /// and uploaded so far; what the harness draws with (framebuffer, uniform blocks, reference
@@ -115,6 +123,12 @@ public:
 
 private:
     void guarded(Call call, const std::function<void()>& body);
+    /// What the call threw, as MethodFailure or MethodSkipped.
+    [[noreturn]] void fail(Call call, const std::exception_ptr& thrown) const;
+    void restore_process(const char* where);
+    void warn_of(const std::vector<std::string>& changed, const char* where);
+    void warn_once(const std::string& what, const char* where);
+    void end_copies(const char* where);
     void set_pipeline_state();
     void fill_blocks(const View& view, bool wireframe);
     /// Framebuffer, state, clear and blocks, for whoever draws next.
@@ -124,6 +138,11 @@ private:
     ServedTerrain served_;
     std::string plugin_name_;
     VitalSigns& signs_;
+    pid_t process_;
+    FloatModes modes_;  // as they were before the plugin was opened
+    ProcessState process_state_;
+    std::set<std::string> warned_,
+        unplaced_;  // what was left changed, and of that by no known call
     std::unique_ptr<platform::Context> context_;
     std::unique_ptr<gl::Device> device_;
     PluginLibrary library_;

@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,7 +19,10 @@
 #include "api/error.h"
 #include "base/child_process.h"
 #include "base/console.h"
+#include "base/process_tree.h"
 #include "run/cell_record.h"
+#include "run/last_words.h"
+#include "run/shared_signs.h"
 
 namespace lodbench::run {
 
@@ -29,29 +32,8 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::size_t kLogLimit = 1 << 20;
 constexpr auto kWatchInterval = std::chrono::milliseconds(20);
+constexpr auto kTreeInterval = std::chrono::milliseconds(200);  // what it started is dearer to ask
 constexpr double kExitGrace_s = 2;  // for the exit handlers of a child whose result is written
-
-/// The page that both processes map.
-class SharedSigns {
-public:
-    explicit SharedSigns(int descriptor) {
-        void* page =
-            mmap(nullptr, sizeof(VitalSigns), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-        if (page == MAP_FAILED) {
-            throw EnvironmentError(
-                fmt::format("cannot map shared memory: {}", std::strerror(errno)));
-        }
-        signs_ = static_cast<VitalSigns*>(page);
-    }
-    ~SharedSigns() { munmap(signs_, sizeof(VitalSigns)); }
-    SharedSigns(const SharedSigns&) = delete;
-    SharedSigns& operator=(const SharedSigns&) = delete;
-    [[nodiscard]] VitalSigns& operator*() const { return *signs_; }
-    [[nodiscard]] VitalSigns* operator->() const { return signs_; }
-
-private:
-    VitalSigns* signs_;
-};
 
 /// What a child prints, into a file that appears with the first byte and stops growing at its
 /// limit. A log that cannot be written loses its text, not the cell.
@@ -59,10 +41,15 @@ class Log {
 public:
     explicit Log(std::filesystem::path path) : path_(std::move(path)) {}
 
+    /// As `run::last_words` has it.
+    [[nodiscard]] std::string last_words() const { return run::last_words(tail_); }
+
     /// Takes all that is in the pipe now.
     void drain(int pipe) {
         char block[16384];
         for (ssize_t count = 0; (count = read(pipe, block, sizeof block)) > 0;) {
+            tail_.append(block, std::size_t(count));
+            if (tail_.size() > kTail) tail_.erase(0, tail_.size() - kTail);
             if (written_ >= kLogLimit) continue;
             if (!stream_.is_open()) stream_.open(path_, std::ios::binary);
             const std::size_t taken = std::min(std::size_t(count), kLogLimit - written_);
@@ -77,19 +64,32 @@ private:
     std::filesystem::path path_;
     std::ofstream stream_;
     std::size_t written_ = 0;
+    static constexpr std::size_t kTail = 4096;
+    std::string tail_;
 };
 
-/// Resident bytes of a process; 0 when it is gone.
-std::uint64_t resident_bytes(pid_t pid) {
-    const base::FileDescriptor file(
-        open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
-    char text[128] = {};
-    if (!file || read(file.number(), text, sizeof text - 1) <= 0) return 0;
-    unsigned long long total = 0;
-    unsigned long long resident = 0;
-    if (std::sscanf(text, "%llu %llu", &total, &resident) != 2) return 0;
-    return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
-}
+/// What a cell has in memory: its process, and more rarely asked, all that it started.
+class MemoryWatch {
+public:
+    /// Bytes. What processes share with one another counts once.
+    std::uint64_t take(const base::ChildProcess& child, SteadyClock::time_point now) {
+        if (now - asked_ >= kTreeInterval) {
+            asked_ = now;
+            together_ = bytes_together(child.processes());
+        }
+        return std::max(base::resident_bytes(child.pid()), together_);
+    }
+
+private:
+    static std::uint64_t bytes_together(const std::vector<pid_t>& processes) {
+        std::uint64_t sum = 0;
+        if (processes.size() < 2) return 0;  // the cheaper question answers that
+        for (const pid_t process : processes) sum += base::proportional_bytes(process);
+        return sum;
+    }
+    SteadyClock::time_point asked_{};
+    std::uint64_t together_ = 0;
+};
 
 /// True where a plugin is asked for a frame: there, and only there, silence means a hang.
 bool belongs_to_a_frame(Call call) {
@@ -133,6 +133,30 @@ CellResult ended(CellStatus status, std::string reason, std::uint64_t peak) {
     return result;
 }
 
+/// What a child that ended by itself leaves: its result, or how it came to an end without one.
+CellResult result_of(const base::ChildEnding& ending, const std::string& text,
+                     const VitalSigns& signs, const std::string& plugin, const Log& log) {
+    if (signs.finished.load() == 1 && !text.empty()) {
+        CellResult result;
+        try {
+            result = read_result(text, "result of plugin " + plugin);
+        } catch (const InputError& error) {
+            return ended(CellStatus::failed, error.what(), 0);
+        }
+        if (!ending.well()) {
+            result.warnings.push_back(
+                fmt::format("after the result was written: {}", ending.words()));
+        }
+        return result;
+    }
+    // A process that ends well without a result was ended by the plugin, not by us.
+    return ended(
+        CellStatus::crashed,
+        fmt::format("{} {}{}{}", ending.words(), place(signs, plugin),
+                    ending.by_signal ? "" : " before its result was written", log.last_words()),
+        0);
+}
+
 void make_inheritable(int descriptor) {
     fcntl(descriptor, F_SETFD, 0);
 }
@@ -168,8 +192,8 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
         throw EnvironmentError(
             fmt::format("cannot share memory with a child: {}", std::strerror(errno)));
     }
-    const SharedSigns signs(signs_file.number());
-    new (&*signs) VitalSigns;
+    const std::shared_ptr<VitalSigns> signs = map_signs(signs_file.number());
+    new (signs.get()) VitalSigns;
     int ends[2];
     if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
         throw EnvironmentError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
@@ -187,6 +211,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     });
     writing.close();
 
+    MemoryWatch memory;
     std::uint64_t peak = 0;
     std::uint64_t beats = 0;
     auto last_beat = start;
@@ -194,7 +219,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     while (!child.wait(kWatchInterval, reading.number())) {
         log.drain(reading.number());
         const auto now = SteadyClock::now();
-        const std::uint64_t resident = resident_bytes(child.pid());
+        const std::uint64_t resident = memory.take(child, now);
         peak = std::max(peak, resident);
         const auto seconds = [now](auto since) {
             return std::chrono::duration<double>(now - since).count();
@@ -202,16 +227,14 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
         const auto kill_for = [&](CellStatus status, const std::string& what) {
             // Where it stood, read before it is gone for good.
             const std::string reason = fmt::format("{} {}", what, place(*signs, plugin));
-            child.kill_group();
-            while (!child.wait(kWatchInterval)) {
-            }
+            child.end();
             log.drain(reading.number());
             return ended(status, reason, peak);
         };
         // Nothing that the plugin leaves to its exit handlers can take a written result away.
         if (signs->finished.load() == 1) {
             if (!finished) finished = now;
-            if (seconds(*finished) > kExitGrace_s) child.kill_group();
+            if (seconds(*finished) > kExitGrace_s) child.end();
             continue;
         }
         if (resident > limits.memory_bytes) {
@@ -236,39 +259,48 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     }
     log.drain(reading.number());
 
-    const base::ChildEnding& ending = child.ending();
-    const std::string text = base::read_all(result_file);
-    if (signs->finished.load() == 1 && !text.empty()) {
-        CellResult result;
-        try {
-            result = read_result(text, "result of plugin " + plugin);
-        } catch (const InputError& error) {
-            return ended(CellStatus::failed, error.what(), peak);
-        }
-        if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
-        if (!ending.well())
-            result.warnings.push_back(
-                fmt::format("after the result was written: {}", ending.words()));
-        return result;
+    CellResult result = result_of(child.ending(), base::read_all(result_file), *signs, plugin, log);
+    if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
+    if (std::string words = child.left_behind(); !words.empty()) {
+        result.warnings.push_back(std::move(words));
     }
-    // A process that ends well without a result was ended by the plugin, not by us.
-    return ended(CellStatus::crashed,
-                 fmt::format("{} {}{}", ending.words(), place(*signs, plugin),
-                             ending.by_signal ? "" : " before its result was written"),
-                 peak);
+    if (const int copies = signs->copies.load(); copies > 0) {
+        result.warnings.push_back(
+            fmt::format("{} cop{} of the process came back from a call (fork) and {} ended", copies,
+                        copies == 1 ? "y" : "ies", copies == 1 ? "was" : "were"));
+    }
+    return result;
 }
+
+namespace {
+
+using FileIdentity = std::pair<dev_t, ino_t>;
+
+/// Device and number of an open file; zeros where the descriptor is closed.
+FileIdentity identity_of(int descriptor) {
+    struct stat status {};
+    return fstat(descriptor, &status) == 0 ? FileIdentity(status.st_dev, status.st_ino)
+                                           : FileIdentity();
+}
+
+}  // namespace
 
 int serve_cell(int spec_descriptor, int signs_descriptor, int result_descriptor) {
     signal(SIGPIPE, SIG_DFL);  // for plugins, and for what they start
-    const SharedSigns signs(signs_descriptor);
+    const std::shared_ptr<VitalSigns> signs = map_signs(signs_descriptor);
     signs->enter(Call::start);
     CellSpec spec;
     {
         const base::FileDescriptor file(spec_descriptor);
         spec = read_spec(base::read_all(file), "specification of a cell");
     }
+    const FileIdentity expected = identity_of(result_descriptor);
     const CellResult result = fly_cell(spec, *signs);
     signs->enter(Call::write_results);
+    if (identity_of(result_descriptor) != expected) {
+        base::tell("the descriptor of the result was closed or names another file");
+        return 1;
+    }
     if (!base::write_all(result_descriptor, write_result(result))) return 1;
     signs->finished.store(1);
     return 0;

@@ -44,6 +44,9 @@ struct VitalSigns {
     std::atomic<std::uint64_t> beats{0};    ///< grows with every call and frame: a sign of life
     std::atomic<std::int32_t> finished{0};  ///< 1 once the result file stands
 
+    /// Copies of the process (fork) that came back from a call and were ended.
+    std::atomic<std::int32_t> copies{0};
+
     void enter(Call next) {
         call.store(next, std::memory_order_relaxed);
         beats.fetch_add(1, std::memory_order_relaxed);

@@ -105,13 +105,50 @@ std::map<std::string, std::vector<Json::Value>> beside_a_healthy_one(const std::
 }
 
 TEST(BrokenPlugins, that_use_up_or_lower_the_descriptors_of_their_process_fail_alone) {
-    for (const auto& [plugin, method] : {std::pair("lowers_limits", "lowers-limits"),
-                                         std::pair("leaks_descriptors", "leaks-descriptors")}) {
+    struct {
+        const char *plugin, *method, *reason;
+    } const faults[] = {
+        {"lowers_limits", "lowers-limits", "lowered a limit of its process: open files: 0, was"},
+        {"leaks_descriptors", "leaks-descriptors", "Too many open files"},
+    };
+    for (const auto& [plugin, method, reason] : faults) {
         auto cells = beside_a_healthy_one(plugin, method, 3);
         for (const Json::Value& cell : cells[method]) {
             if (cell["repetition"] != 0) continue;  // only the first opens files: its pictures
             EXPECT_EQ(cell["status"], "failed") << method;
-            EXPECT_THAT(cell["reason"].asString(), testing::HasSubstr("Too many open files"));
+            EXPECT_THAT(cell["reason"].asString(), testing::HasSubstr(reason));
+        }
+    }
+}
+
+TEST(BrokenPlugins, whose_file_vanishes_or_is_exchanged_lose_their_own_cells) {
+    struct {
+        const char *what, *reason;
+    } const faults[] = {
+        {"remove", "No such file or directory"},
+        {"exchange", "cannot be used: the loader says '"},
+        {"append", " changed while it was opened: its checksum was "},
+    };
+    for (const auto& [what, reason] : faults) {
+        SCOPED_TRACE(what);
+        const ScratchFolder folder;
+        const fs::path plugins = folder.path() / "plugins";
+        fs::create_directory(plugins);
+        fs::copy(broken_plugin_folder("spoils_its_file") + "/spoils_its_file.so", plugins);
+        const fs::path out = folder.path() / "out";
+        const Finished finished = run_lodbench(
+            {"run", tiny_scenario(folder.path(), "repetitions = 2\n").string(), "--out",
+             out.string(), "--method", "spoils-its-file", "--method", "healthy", "--plugin-dir",
+             plugins.string(), "--plugin-dir", broken_plugin_folder("healthy")},
+            folder.path(), [what = what] { setenv("LODBENCH_TEST_SPOILS", what, 1); });
+        EXPECT_EQ(finished.status, 3) << finished.output;
+        const std::vector<Json::Value> cells = cells_of(out);
+        EXPECT_EQ(cells.size(), 4U);
+        for (const Json::Value& cell : cells) {
+            const bool good = cell["method"] == "healthy";
+            EXPECT_EQ(cell["status"], good ? "ok" : "failed");
+            if (good) continue;
+            EXPECT_THAT(cell["reason"].asString(), HasSubstr(reason));
         }
     }
 }
@@ -127,6 +164,18 @@ TEST(BrokenPlugins, that_hang_in_an_exit_handler_keep_the_result_that_was_writte
         }
         EXPECT_TRUE(said);
     }
+}
+
+TEST(BrokenPlugins, that_hang_cost_a_mesh_its_time_limit) {
+    const ScratchFolder folder;
+    const fs::path out = folder.path() / "loops.ply";
+    const Finished finished = run_lodbench(
+        {"mesh", "loops", "--scenario", tiny_scenario(folder.path(), "").string(), "--plugin-dir",
+         broken_plugin_folder("loops"), "--out", out.string(), "--time-limit", "3"},
+        folder.path());
+    EXPECT_EQ(finished.status, 3) << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr("gave no answer within 3 s, in draw"));
+    EXPECT_FALSE(fs::exists(out));
 }
 
 TEST(BrokenPlugins, that_do_not_load_are_refused_with_a_warning_and_recorded) {

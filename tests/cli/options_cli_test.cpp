@@ -68,6 +68,8 @@ TEST(CommandLine, values_that_no_measurement_can_use_are_refused_before_any_flig
         {{"match", scenario, "--error", "1px", "--tolerance", "nan", "--out", out},
          "expected a number of percent"},
         {{"validate", "--time-factor", "nan", "x.so"}, "expected a finite number"},
+        {{"validate", "--time-limit", "inf", "x.so"}, "expected a finite number above 0"},
+        {{"mesh", "pgm", "--time-limit", "0", "--out", out}, "expected a finite number above 0"},
         {{"run", scenario, "--repeat", "1001", "--out", out}, "1 to 1000"},
         {{"run", scenario, "--method", "pgm", "--set", long_value, "--out", out},
          "write shorter values"},

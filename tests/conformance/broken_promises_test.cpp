@@ -71,8 +71,10 @@ constexpr Fault kFaults[] = {
     {"refuses-its-maximum", "parameters-at-their-limits", "tau = 100: "},
     {"leaves-a-hole", "terrain-in-view-is-covered", "are covered by no triangle"},
     {"aborts", "draw-is-idempotent", "signal 6"},
+    {"rounds-upwards", "pipeline-state-is-restored",
+     "left the floating-point rounding mode changed in select"},
     // The limit of 120 s, shortened.
-    {"loops", "draw-is-idempotent --time-factor 0.02", "gave no answer within"},
+    {"loops", "draw-is-idempotent --time-factor 0.02", "hung in draw: it did not come back within"},
 };
 
 std::string name_of(const testing::TestParamInfo<Fault>& info) {
@@ -90,6 +92,22 @@ TEST(Conformance, passes_a_method_that_keeps_every_promise) {
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_EQ(outcome.output.find("failed "), std::string::npos) << outcome.output;
     EXPECT_EQ(outcome.output.find("skipped "), std::string::npos) << outcome.output;
+}
+
+TEST(Conformance, a_hang_costs_one_limit_and_not_one_a_test) {
+    const Outcome outcome = validate("--method loops --time-limit 4");
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    const auto said = [&](const std::string& words) {
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = outcome.output.find(words, at)) != std::string::npos; ++at) {
+            ++count;
+        }
+        return count;
+    };
+    EXPECT_EQ(said("hung in draw: it did not come back within 2 s"), 1U) << outcome.output;
+    EXPECT_EQ(said("not run: draw-is-idempotent hung in draw"), 15U) << outcome.output;
+    EXPECT_NE(outcome.output.find("1 passed, 1 failed, 15 skipped"), std::string::npos)
+        << outcome.output;
 }
 
 TEST(Conformance, names_the_tests_when_one_is_misspelt) {

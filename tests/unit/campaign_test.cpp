@@ -1,13 +1,16 @@
 // Order of the cells, what stands in the results, and what a table says of them.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <json/writer.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <cstdlib>
 #include <fstream>
 #include <set>
 
+#include "base/isolated.h"
 #include "report/json.h"
 #include "report/results.h"
 #include "report/table.h"
@@ -113,6 +116,18 @@ TEST(Results, files_are_written_whole_or_not_at_all) {
     report::write_whole(base / "a", "two");
     EXPECT_EQ(report::read_text(base / "a"), "two");
     EXPECT_THROW(report::write_whole(base / "none" / "a", "x"), EnvironmentError);
+    const base::Answer full = base::run_isolated(20, [&] {
+        const rlimit bytes{4096, 4096};
+        setrlimit(RLIMIT_FSIZE, &bytes);
+        signal(SIGXFSZ, SIG_IGN);
+        try {
+            report::write_whole(base / "a", std::string(5000, 'x'));
+        } catch (const report::DiskFullError& error) {
+            return std::string(error.what());
+        }
+        return std::string("it fits");
+    });
+    EXPECT_THAT(full.text, testing::HasSubstr("File too large; make room there"));
     EXPECT_THROW(report::append_line("/dev/full", "x"), EnvironmentError);
     report::append_line(base / "lines", "{}");
     std::ofstream(base / "lines", std::ios::app) << "{\"half\":";

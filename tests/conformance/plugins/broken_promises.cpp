@@ -1,6 +1,7 @@
 // Methods that break one promise each, on purpose: the conformance suite must notice every one of
 // them.
 
+#include <cfenv>
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
@@ -67,11 +68,8 @@ private:
 class DependsOnThePast : public GridMethod {
 public:
     explicit DependsOnThePast(const Params& params) : GridMethod(params) {
-        // The process's environment outlives the method: an honest way to keep a fault without a
-        // global.
-        const char* before = std::getenv("LODBENCH_TEST_INSTANCES");
-        instance_ = before == nullptr ? 0 : std::atoi(before) + 1;
-        setenv("LODBENCH_TEST_INSTANCES", std::to_string(instance_).c_str(), 1);
+        static int instances = 0;  // outlives the method: a plugin's code stays mapped
+        instance_ = instances++;
     }
     void draw(const View&) override { draw_grid({0, 0, float(instance_)}); }
 
@@ -85,6 +83,15 @@ public:
     void draw(const View& view) override {
         GridMethod::draw(view);
         glDisable(GL_DEPTH_TEST);
+    }
+};
+
+class RoundsUpwards : public GridMethod {
+public:
+    using GridMethod::GridMethod;
+    void select(const Camera& camera, const Clock& clock) override {
+        GridMethod::select(camera, clock);
+        std::fesetround(FE_UPWARD);
     }
 };
 
@@ -223,6 +230,7 @@ constexpr MethodDescriptor kMethods[] = {
     method<NeedsSettle>("needs-settle"),
     method<DependsOnThePast>("depends-on-the-past"),
     method<LeavesState>("leaves-state"),
+    method<RoundsUpwards>("rounds-upwards"),
     method<RaisesErrors>("raises-errors"),
     method<LeaksBareBuffer>("leaks-bare-buffer"),
     method<KeepsObjects>("keeps-objects"),
