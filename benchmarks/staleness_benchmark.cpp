@@ -59,12 +59,12 @@ void staleness_cost(const Options& options) {
         stage.settle();
         stage.pause_background();  // nothing newer arrives
         stage.select(camera, {});
-        run::FrameRecord record;
+        results::FrameRecord record;
         record.triangles = stage.count_primitives();
         run::FrameMeasurer measurer(stage, kDelta, terrain);
         measurer.take(0, record, nullptr);
         measurer.measure(record);
-        run::CellResult result;
+        results::CellResult result;
         measurer.finish(result);
         const Json::Value& screen = result.truth["screen_error_px"];
         const Json::Value& pixel = result.truth["pixel_error_px"];

@@ -62,10 +62,10 @@ void measure_frames(const Options& options, int size) {
 
     run::FrameMeasurer measurer(stage, 1.0, terrain);
     std::vector<double> taken, measured;
-    run::FrameRecord last;
+    results::FrameRecord last;
     for (int frame = 0; frame < options.repetitions + 1; ++frame) {
         stage.select(grazing_camera(terrain->info(), frame), {frame, frame / 60.0});
-        run::FrameRecord record;
+        results::FrameRecord record;
         record.triangles = stage.count_primitives();
         const double take = seconds_of([&] { measurer.take(frame, record, &last); });
         const double rest = seconds_of([&] { measurer.measure(record); });
@@ -75,7 +75,7 @@ void measure_frames(const Options& options, int size) {
         }
         last = record;
     }
-    run::CellResult result;
+    results::CellResult result;
     measurer.finish(result);
     const double own = memory_bytes("VmHWM") - before + field_bytes;
     const auto median = [](const std::vector<double>& values) {

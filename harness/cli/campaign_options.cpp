@@ -10,8 +10,9 @@
 
 #include "api/error.h"
 #include "base/console.h"
+#include "base/files.h"
 #include "cli/options.h"
-#include "report/results.h"
+#include "report/summary.h"
 
 namespace lodbench::cli {
 
@@ -21,7 +22,7 @@ const std::string kClearLine = "\r\033[K";
 
 /// As it was typed, quoting apart.
 std::string command_line() {
-    std::string text = report::read_text("/proc/self/cmdline");
+    std::string text = base::read_text("/proc/self/cmdline");
     while (!text.empty() && text.back() == '\0') text.pop_back();
     std::ranges::replace(text, '\0', ' ');
     return text;
@@ -115,6 +116,10 @@ void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, st
     if (terminal_) base::write_error(kClearLine);
     base::tell("[{}/{}] {} {}{}", index + 1, count, cell.spec.id, words,
                time_left(count - index - 1, 0));
+}
+
+std::string Progress::summary(const run::CampaignOutcome& outcome, const Json::Value& run) {
+    return report::summary_text(outcome.cells, outcome.warnings, run);
 }
 
 /// From the mean of the cells so far; nothing before there is one.

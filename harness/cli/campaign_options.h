@@ -51,6 +51,8 @@ public:
                        double fraction) override;
     void cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        const Json::Value& record) override;
+    [[nodiscard]] std::string summary(const run::CampaignOutcome& outcome,
+                                      const Json::Value& run) override;
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/method_json.h"
 #include "cli/options.h"
-#include "report/json.h"
+#include "results/json.h"
 #include "run/exit_status.h"
 #include "run/plugin_library.h"
 
@@ -45,7 +45,7 @@ int describe(const Options& options) {
     const auto plugins = find_plugins(options.plugin_dirs);
     const run::MethodInfo& method = run::find_method(plugins, options.method, "describe");
     if (options.json) {
-        base::print("{}\n", report::to_text(method_json(method)));
+        base::print("{}\n", results::to_text(method_json(method)));
     } else {
         print(method);
     }

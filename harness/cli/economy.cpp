@@ -8,13 +8,13 @@
 
 #include "api/error.h"
 #include "base/console.h"
+#include "base/files.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "report/aligned_table.h"
-#include "report/cell_groups.h"
-#include "report/json.h"
-#include "report/results.h"
+#include "results/cell_groups.h"
+#include "results/json.h"
 #include "run/locations.h"
 
 namespace lodbench::cli {
@@ -26,7 +26,7 @@ struct Options : CampaignOptions {
 };
 
 std::string px(const Json::Value& value) {
-    const auto number = report::read_number_or_inf(value);
+    const auto number = results::read_number_or_inf(value);
     return number ? fmt::format("{:.4g}", *number) : "-";
 }
 
@@ -37,14 +37,14 @@ std::string economy_text(const std::vector<Json::Value>& cells) {
     const auto count = [](const Json::Value& value) {
         return value.isUInt64() ? fmt::format("{}", value.asUInt64()) : "-";
     };
-    for (const report::CellGroup& group : report::group_cells(cells)) {
+    for (const results::CellGroup& group : results::group_cells(cells)) {
         Lines& lines =
             scenarios
                 .try_emplace(group.scenario,
                              Lines{{"method", "frame", "triangles", "full grid", "P99.9 px",
                                     "would do", "ratio", "max px", "would do", "ratio"}})
                 .first->second;
-        for (const std::string& failure : report::failures_of(group)) {
+        for (const std::string& failure : results::failures_of(group)) {
             failures += fmt::format("- {}, {}: {}\n", group.label, group.scenario, failure);
         }
         for (const Json::Value* cell : group.good) {
@@ -57,10 +57,10 @@ std::string economy_text(const std::vector<Json::Value>& cells) {
                     group.label, fmt::format("{}", frame["frame"].asInt()),
                     count(frame["triangles"]), count(frame["full_triangles"])};
                 for (const char* bound : {"p999", "max"}) {
-                    const Json::Value& fewest = report::member_of(frame, bound);
-                    line.push_back(px(report::member_of(fewest, "target_px")));
-                    line.push_back(count(report::member_of(fewest, "minimal_triangles")));
-                    const Json::Value& ratio = report::member_of(fewest, "ratio");
+                    const Json::Value& fewest = results::member_of(frame, bound);
+                    line.push_back(px(results::member_of(fewest, "target_px")));
+                    line.push_back(count(results::member_of(fewest, "minimal_triangles")));
+                    const Json::Value& ratio = results::member_of(fewest, "ratio");
                     line.push_back(ratio.isNumeric() ? fmt::format("{:.2f}", ratio.asDouble())
                                                      : "-");
                 }
@@ -85,9 +85,9 @@ int economy(Options& options) {
     Progress progress;
     const run::CampaignOutcome outcome = run_campaign(request, run::executable_path(), progress);
     const std::string text = economy_text(outcome.cells);
-    report::write_whole(outcome.out / "economy.md", "# lodbench economy\n\n" + text);
+    base::write_whole(outcome.out / "economy.md", "# lodbench economy\n\n" + text);
     if (options.json) {
-        base::print("{}\n", report::to_text(to_json(outcome)));
+        base::print("{}\n", results::to_text(to_json(outcome)));
     } else {
         base::print("\n{}\nresults   {}\n", text, outcome.out.string());
     }

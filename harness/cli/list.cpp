@@ -8,7 +8,7 @@
 #include "cli/method_json.h"
 #include "cli/options.h"
 #include "platform/context.h"
-#include "report/json.h"
+#include "results/json.h"
 #include "run/exit_status.h"
 #include "run/plugin_library.h"
 
@@ -38,7 +38,7 @@ int list_devices(bool json) {
         entry["software"] = device.software;
         array.append(entry);
     }
-    if (json) base::print("{}\n", report::to_text(array));
+    if (json) base::print("{}\n", results::to_text(array));
     if (count > 0) return run::kAllWell;
     base::tell(
         "lodbench: EGL names no device: no driver is installed, or none is found where "
@@ -64,7 +64,7 @@ int list_methods(const Options& options) {
             if (!options.json) base::print("{:<20} {}\n", method.id, method.title);
         }
     }
-    if (options.json) base::print("{}\n", report::to_text(object));
+    if (options.json) base::print("{}\n", results::to_text(object));
     return 0;
 }
 

@@ -9,12 +9,12 @@
 
 #include "api/error.h"
 #include "base/console.h"
+#include "base/files.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/trade_options.h"
 #include "report/aligned_table.h"
-#include "report/json.h"
-#include "report/results.h"
+#include "results/json.h"
 #include "run/locations.h"
 #include "run/match.h"
 
@@ -29,9 +29,9 @@ struct Options : CampaignOptions {
     int most_probes = 16;
 };
 
-report::MatchTarget read_target(const Options& options) {
-    using Quantity = report::MatchTarget::Quantity;
-    report::MatchTarget target;
+results::MatchTarget read_target(const Options& options) {
+    using Quantity = results::MatchTarget::Quantity;
+    results::MatchTarget target;
     target.metric = read_metric(options.metric);
     if (!std::isfinite(options.tolerance_percent)) {  // which CLI11's ranges let through
         throw InputError("--tolerance: expected a number of percent in 0.01..50");
@@ -88,7 +88,7 @@ std::string search_text(const std::vector<run::MatchedMethod>& methods) {
 }
 
 int match(Options& options) {
-    const report::MatchTarget target = read_target(options);
+    const results::MatchTarget target = read_target(options);
     options.require_folder_to_resume();
     options.finish();
     Progress progress;
@@ -107,12 +107,12 @@ int match(Options& options) {
     const std::string text =
         fmt::format("{}, within {:.3g} %\n\n{}\n{}", target.words(), 100 * target.tolerance,
                     search_text(outcome.methods), report::trade_text(rows, target.metric, {}));
-    report::write_whole(outcome.campaign.out / "match.md", "# lodbench match\n\n" + text);
+    base::write_whole(outcome.campaign.out / "match.md", "# lodbench match\n\n" + text);
     if (options.json) {
         Json::Value object = to_json(outcome.campaign);
-        object["match"] = report::to_json(run::match_record(target, outcome.methods));
+        object["match"] = results::to_json(run::match_record(target, outcome.methods));
         object["trade"] = report::to_json(rows);
-        base::print("{}\n", report::to_text(object));
+        base::print("{}\n", results::to_text(object));
     } else {
         base::print("\n{}\nresults   {}\n", text, outcome.campaign.out.string());
     }

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "base/console.h"
+#include "base/files.h"
 #include "base/isolated.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/terrain_options.h"
-#include "report/results.h"
 #include "run/exit_status.h"
 #include "run/locations.h"
 #include "run/mesh_export.h"
@@ -144,7 +144,7 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
     const run::Mesh mesh = options.before_clipping
                                ? run::weld(surface)
                                : run::weld(measure::clipped_triangles(surface, terrain->info()));
-    report::write_whole(options.out, run::ply(mesh, context));
+    base::write_whole(options.out, run::ply(mesh, context));
     stage.release();
     return options.json
                ? fmt::format("{{\"vertices\": {}, \"triangles\": {}}}", mesh.vertices.size(),

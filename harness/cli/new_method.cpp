@@ -15,9 +15,9 @@
 
 #include "api/error.h"
 #include "base/console.h"
+#include "base/files.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "report/results.h"
 #include "run/locations.h"
 
 namespace lodbench::cli {
@@ -129,8 +129,8 @@ void copy_template(const fs::path& folder, const MethodName& name) {
     }
     try {
         for (const char* file : kTemplateFiles) {
-            report::write_whole(unfinished / rename_all(file, name),
-                                rename_all(report::read_text(source / file), name));
+            base::write_whole(unfinished / rename_all(file, name),
+                              rename_all(base::read_text(source / file), name));
         }
         fs::rename(unfinished, folder, error);
         if (error) {
@@ -144,10 +144,10 @@ void copy_template(const fs::path& folder, const MethodName& name) {
 }
 
 void add_to_tree(const fs::path& list, const MethodName& name) {
-    std::string text = report::read_text(list);
+    std::string text = base::read_text(list);
     if (!text.empty() && text.back() != '\n') text += '\n';
     text += fmt::format("add_subdirectory({})\n", name.snake_case);
-    report::write_whole(list, text);
+    base::write_whole(list, text);
 }
 
 /// For a shell: as it is where nothing in it is special, else in single quotes.

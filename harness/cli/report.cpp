@@ -9,9 +9,9 @@
 
 #include "api/error.h"
 #include "base/console.h"
+#include "base/files.h"
 #include "cli/commands.h"
 #include "report/html/report.h"
-#include "report/results.h"
 
 namespace lodbench::cli {
 
@@ -25,8 +25,8 @@ struct ReportOptions {
     fs::path csv;
 };
 
-std::vector<report::ResultFolder> read_folders(const std::vector<fs::path>& paths) {
-    std::vector<report::ResultFolder> folders;
+std::vector<results::ResultFolder> read_folders(const std::vector<fs::path>& paths) {
+    std::vector<results::ResultFolder> folders;
     std::set<fs::path> known;
     for (const fs::path& path : paths) {
         std::error_code error;
@@ -39,7 +39,7 @@ std::vector<report::ResultFolder> read_folders(const std::vector<fs::path>& path
         if (!known.insert(fs::canonical(path)).second) {
             throw InputError(fmt::format("{}: this folder is named twice", path.string()));
         }
-        folders.push_back(report::read_result_folder(path));
+        folders.push_back(results::read_result_folder(path));
     }
     return folders;
 }
@@ -52,7 +52,7 @@ void write_csv(const fs::path& folder, const std::map<std::string, std::string>&
             fmt::format("cannot make the folder {}: {}; choose another with --csv", folder.string(),
                         error.message()));
     }
-    for (const auto& [name, csv] : tables) report::write_whole(folder / (name + ".csv"), csv);
+    for (const auto& [name, csv] : tables) base::write_whole(folder / (name + ".csv"), csv);
 }
 
 void write(const ReportOptions& options) {
@@ -60,7 +60,7 @@ void write(const ReportOptions& options) {
     const fs::path out =
         options.out.empty() ? options.folders.front() / "report.html" : options.out;
     if (!options.csv.empty()) write_csv(options.csv, page.csv);
-    report::write_whole(out, page.html);
+    base::write_whole(out, page.html);
     base::print("report    {}\n", fs::absolute(out).lexically_normal().string());
     if (!options.csv.empty()) {
         base::print("tables    {}\n", fs::absolute(options.csv).lexically_normal().string());

@@ -9,8 +9,8 @@
 #include "base/console.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
-#include "report/json.h"
 #include "report/table.h"
+#include "results/json.h"
 #include "run/locations.h"
 
 namespace lodbench::cli {
@@ -23,7 +23,7 @@ struct Options : CampaignOptions {
 
 void print_outcome(const run::CampaignOutcome& outcome, bool json) {
     if (json) {
-        base::print("{}\n", report::to_text(to_json(outcome)));
+        base::print("{}\n", results::to_text(to_json(outcome)));
         return;
     }
     base::print("\n{}\n", report::text_table(report::table_rows(outcome.cells, outcome.seed)));

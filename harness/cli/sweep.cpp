@@ -9,13 +9,13 @@
 
 #include "api/error.h"
 #include "base/console.h"
+#include "base/files.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/trade_options.h"
-#include "report/json.h"
-#include "report/results.h"
 #include "report/trade.h"
+#include "results/json.h"
 #include "run/knob.h"
 #include "run/locations.h"
 
@@ -97,7 +97,7 @@ void spread_knobs(Options& options, const std::vector<run::PluginListing>& plugi
 }
 
 int sweep(Options& options) {
-    const report::ErrorMetric metric = read_metric(options.metric);
+    const results::ErrorMetric metric = read_metric(options.metric);
     std::map<std::string, std::string> knobs;
     spread_knobs(options, find_plugins(options.request.plugin_dirs), knobs);
     options.request.overrides.truth = true;
@@ -108,11 +108,11 @@ int sweep(Options& options) {
         run_campaign(options.request, run::executable_path(), progress);
     const auto rows = report::trade_rows(outcome.cells, knobs, metric, outcome.seed);
     const std::string text = report::trade_text(rows, metric, options.reference);
-    report::write_whole(outcome.out / "trade.md", "# lodbench sweep\n\n" + text);
+    base::write_whole(outcome.out / "trade.md", "# lodbench sweep\n\n" + text);
     if (options.json) {
         Json::Value object = to_json(outcome);
         object["trade"] = report::to_json(rows);
-        base::print("{}\n", report::to_text(object));
+        base::print("{}\n", results::to_text(object));
     } else {
         base::print("\n{}\nresults   {}\n", text, outcome.out.string());
     }

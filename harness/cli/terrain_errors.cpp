@@ -7,7 +7,7 @@
 #include "base/console.h"
 #include "cli/terrain_options.h"
 #include "common/leb_errors.h"
-#include "report/json.h"
+#include "results/json.h"
 #include "terrain/raster_writer.h"
 
 namespace lodbench::cli {
@@ -76,7 +76,7 @@ void run(const Options& options, const CLI::App& command) {
         object["centre_error_m"] = centre.error;
         object["centre_radius_m"] = centre.radius;
         object["written"] = options.output;
-        base::print("{}\n", report::to_text(object, true));
+        base::print("{}\n", results::to_text(object, true));
         return;
     }
     base::print("name      {}\n", info.name);

@@ -6,7 +6,7 @@
 
 #include "base/console.h"
 #include "cli/terrain_options.h"
-#include "report/json.h"
+#include "results/json.h"
 #include "terrain/open_terrain.h"
 #include "terrain/tile_store.h"
 
@@ -111,7 +111,7 @@ void tell_warnings(const TerrainInfo& info, const terrain::Provenance& provenanc
 void print(const TerrainText& text, bool json) {
     tell_warnings(text.info, text.provenance);
     if (json) {
-        base::print("{}\n", report::to_text(json_of(text), true));
+        base::print("{}\n", results::to_text(json_of(text), true));
         return;
     }
     const TerrainInfo& info = text.info;

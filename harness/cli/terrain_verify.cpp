@@ -8,7 +8,7 @@
 #include "api/error.h"
 #include "base/console.h"
 #include "cli/terrain_options.h"
-#include "report/json.h"
+#include "results/json.h"
 #include "run/exit_status.h"
 #include "terrain/tile_store_check.h"
 
@@ -41,7 +41,7 @@ int run(const VerifyOptions& options) {
         object["fault_count"] = Json::UInt64(report.fault_count);
         object["faults"] = Json::arrayValue;
         for (const std::string& fault : report.faults) object["faults"].append(fault);
-        base::print("{}\n", report::to_text(object, true));
+        base::print("{}\n", results::to_text(object, true));
         return status;
     }
     for (const std::string& fault : report.faults) base::print("{}: {}\n", options.file, fault);

@@ -17,8 +17,8 @@ void add_metric(CLI::App& command, std::string& metric) {
         ->capture_default_str();
 }
 
-report::ErrorMetric read_metric(const std::string& text) {
-    if (const auto metric = report::error_metric(text)) return *metric;
+results::ErrorMetric read_metric(const std::string& text) {
+    if (const auto metric = results::error_metric(text)) return *metric;
     throw InputError(fmt::format("--metric {}: expected p999, max or rms", text));
 }
 

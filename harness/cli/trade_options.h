@@ -11,7 +11,7 @@ namespace lodbench::cli {
 /// --metric
 void add_metric(CLI::App& command, std::string& metric);
 /// Throws InputError for anything but p999, max and rms.
-[[nodiscard]] report::ErrorMetric read_metric(const std::string& text);
+[[nodiscard]] results::ErrorMetric read_metric(const std::string& text);
 /// "PX,MS", both positive. Throws InputError.
 [[nodiscard]] report::TradePoint read_reference(const std::string& text);
 /// A positive, finite number with or without its unit. Throws InputError naming `option`.

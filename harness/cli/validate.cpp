@@ -15,7 +15,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "conformance/suite.h"
-#include "report/json.h"
+#include "results/json.h"
 #include "run/exit_status.h"
 
 namespace lodbench::cli {
@@ -110,7 +110,7 @@ void print_line(const ValidateOptions& options, const std::string& method,
         line["reason"] = report.reason;
         line["seconds"] = report.seconds;
         line["seed"] = Json::UInt64(options.seed);
-        base::print("{}\n", report::to_text(line));
+        base::print("{}\n", results::to_text(line));
     } else {
         base::print("{:<8} {} {} ({:.1f} s){}{}\n", verdict, method, report.check, report.seconds,
                     report.reason.empty() ? "" : ": ", report.reason);

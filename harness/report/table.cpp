@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "measure/statistics.h"
-#include "report/cell_groups.h"
+#include "results/cell_groups.h"
 
 namespace lodbench::report {
 
@@ -26,7 +26,7 @@ std::string greatest(const std::vector<double>& values, const char* format, doub
 }
 
 std::string fps_text(const std::vector<const Json::Value*>& cells, std::uint64_t seed) {
-    const auto interval = measure::run_interval(numbers_of(cells, "fps"), seed);
+    const auto interval = measure::run_interval(results::numbers_of(cells, "fps"), seed);
     if (!interval) return kAbsent;
     return fmt::format("{:.1f} ({:.1f}..{:.1f})", interval->centre, interval->low, interval->high);
 }
@@ -63,22 +63,27 @@ const std::vector<std::string>& table_columns() {
 
 std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uint64_t seed) {
     std::vector<TableRow> rows;
-    for (const CellGroup& group : group_cells(cells)) {
-        TableRow row{group.scenario, group.label, {}, failures_of(group), disagreements_of(group)};
+    for (const results::CellGroup& group : results::group_cells(cells)) {
+        TableRow row{group.scenario,
+                     group.label,
+                     {},
+                     results::failures_of(group),
+                     results::disagreements_of(group)};
         const auto& good = group.good;
-        row.fields = {fps_text(good, seed),
-                      median(numbers_of(good, "frame_ms", "median"), "{:.3f}"),
-                      median(numbers_of(good, "frame_ms", "p90"), "{:.3f}"),
-                      greatest(numbers_of(good, "frame_ms", "max"), "{:.3f}"),
-                      median(numbers_of(good, "triangles", "mean"), "{:.0f}"),
-                      median(numbers_of(good, "prepare_s"), "{:.3f}"),
-                      median(numbers_of(good, "gpu_bytes"), "{:.1f}", kMebibyte),
-                      greatest(numbers_of(good, "peak_rss_bytes"), "{:.0f}", kMebibyte),
-                      median(numbers_of(good, "pixel_error_px", "p999"), "{:.2f}"),
-                      median(numbers_of(good, "pixel_error_px", "max"), "{:.2f}"),
-                      median(numbers_of(good, "crack_pixels", "total"), "{:.0f}"),
-                      median(numbers_of(good, "popping_px", "p999"), "{:.2f}"),
-                      median(numbers_of(good, "bound_honesty"), "{:.3f}")};
+        row.fields = {
+            fps_text(good, seed),
+            median(results::numbers_of(good, "frame_ms", "median"), "{:.3f}"),
+            median(results::numbers_of(good, "frame_ms", "p90"), "{:.3f}"),
+            greatest(results::numbers_of(good, "frame_ms", "max"), "{:.3f}"),
+            median(results::numbers_of(good, "triangles", "mean"), "{:.0f}"),
+            median(results::numbers_of(good, "prepare_s"), "{:.3f}"),
+            median(results::numbers_of(good, "gpu_bytes"), "{:.1f}", results::kMebibyte),
+            greatest(results::numbers_of(good, "peak_rss_bytes"), "{:.0f}", results::kMebibyte),
+            median(results::numbers_of(good, "pixel_error_px", "p999"), "{:.2f}"),
+            median(results::numbers_of(good, "pixel_error_px", "max"), "{:.2f}"),
+            median(results::numbers_of(good, "crack_pixels", "total"), "{:.0f}"),
+            median(results::numbers_of(good, "popping_px", "p999"), "{:.2f}"),
+            median(results::numbers_of(good, "bound_honesty"), "{:.3f}")};
         rows.push_back(std::move(row));
     }
     return rows;

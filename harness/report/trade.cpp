@@ -9,7 +9,7 @@
 
 #include "api/error.h"
 #include "report/aligned_table.h"
-#include "report/json.h"
+#include "results/json.h"
 
 namespace lodbench::report {
 namespace {
@@ -84,41 +84,9 @@ double hypervolume(std::span<const TradePoint> points, const TradePoint& referen
     return area / (reference.cost * reference.error);
 }
 
-const char* name_of(ErrorMetric metric) {
-    switch (metric) {
-        case ErrorMetric::p999: return "p999";
-        case ErrorMetric::max: return "max";
-        case ErrorMetric::rms: break;
-    }
-    return "rms";
-}
-
-std::optional<ErrorMetric> error_metric(const std::string& name) {
-    for (const ErrorMetric metric : {ErrorMetric::p999, ErrorMetric::max, ErrorMetric::rms}) {
-        if (name == name_of(metric)) return metric;
-    }
-    return std::nullopt;
-}
-
-std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric) {
-    for (const char* field : {"pixel_error_realtime_px", "pixel_error_px"}) {
-        const Json::Value& errors = cell[field];
-        if (errors.isObject()) return read_number_or_inf(errors[name_of(metric)]);
-    }
-    return std::nullopt;
-}
-
-std::optional<double> pixel_error(const CellGroup& group, ErrorMetric metric) {
-    std::vector<double> errors;
-    for (const Json::Value* cell : group.good) {
-        if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
-    }
-    return measure::median(errors);
-}
-
-TradePoint trade_point(const CellGroup& group, ErrorMetric metric) {
-    const auto frame_ms = measure::median(numbers_of(group.good, "frame_ms", "mean"));
-    return {frame_ms.value_or(kInfinity), pixel_error(group, metric).value_or(kInfinity)};
+TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric) {
+    const auto frame_ms = measure::median(results::numbers_of(group.good, "frame_ms", "mean"));
+    return {frame_ms.value_or(kInfinity), results::pixel_error(group, metric).value_or(kInfinity)};
 }
 
 std::optional<TradePoint> reference_point(std::span<const TradePoint> points) {
@@ -151,24 +119,26 @@ std::vector<MethodTrade> method_trades(
 
 std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
                                  const std::map<std::string, std::string>& knobs,
-                                 ErrorMetric metric, std::uint64_t seed) {
+                                 results::ErrorMetric metric, std::uint64_t seed) {
     std::vector<TradeRow> rows;
-    for (const CellGroup& group : group_cells(cells)) {
+    for (const results::CellGroup& group : results::group_cells(cells)) {
         TradeRow row;
         row.scenario = group.scenario;
         row.method = group.method;
         row.label = group.label;
-        row.failures = failures_of(group);
+        row.failures = results::failures_of(group);
         const auto knob = knobs.find(group.method);
         for (const Json::Value* cell : group.good) {
-            if (knob != knobs.end()) row.knob = read_number_or_inf((*cell)["params"][knob->second]);
+            if (knob != knobs.end())
+                row.knob = results::read_number_or_inf((*cell)["params"][knob->second]);
         }
-        row.error = pixel_error(group, metric);
+        row.error = results::pixel_error(group, metric);
         row.point = trade_point(group, metric);
-        row.frame_ms = measure::run_interval(numbers_of(group.good, "frame_ms", "mean"), seed);
-        row.triangles = measure::median(numbers_of(group.good, "triangles", "mean"));
-        row.gpu_bytes = measure::median(numbers_of(group.good, "gpu_bytes"));
-        row.prepare_s = measure::median(numbers_of(group.good, "prepare_s"));
+        row.frame_ms =
+            measure::run_interval(results::numbers_of(group.good, "frame_ms", "mean"), seed);
+        row.triangles = measure::median(results::numbers_of(group.good, "triangles", "mean"));
+        row.gpu_bytes = measure::median(results::numbers_of(group.good, "gpu_bytes"));
+        row.prepare_s = measure::median(results::numbers_of(group.good, "prepare_s"));
         rows.push_back(std::move(row));
     }
     std::ranges::stable_sort(rows, {}, [](const TradeRow& row) {
@@ -187,19 +157,19 @@ Json::Value to_json(const std::vector<TradeRow>& rows) {
         json["scenario"] = row.scenario;
         json["method"] = row.method;
         json["label"] = row.label;
-        json["knob"] = number(row.knob);
-        json["pixel_error_px"] = number_or_inf(row.error);
-        json["frame_ms"] = row.frame_ms ? number(row.frame_ms->centre) : Json::Value::null;
-        json["triangles"] = number(row.triangles);
-        json["gpu_bytes"] = number(row.gpu_bytes);
-        json["prepare_s"] = number(row.prepare_s);
+        json["knob"] = results::number(row.knob);
+        json["pixel_error_px"] = results::number_or_inf(row.error);
+        json["frame_ms"] = row.frame_ms ? results::number(row.frame_ms->centre) : Json::Value::null;
+        json["triangles"] = results::number(row.triangles);
+        json["gpu_bytes"] = results::number(row.gpu_bytes);
+        json["prepare_s"] = results::number(row.prepare_s);
         json["on_front"] = row.on_front;
         array.append(json);
     }
     return array;
 }
 
-std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
+std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric,
                        const std::optional<TradePoint>& reference) {
     std::string text;
     each_scenario(rows, [&](std::span<const TradeRow> scenario) {
@@ -209,13 +179,14 @@ std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
              "GPU MiB", "prepare s", "front"}};
         std::vector<std::string> failures;
         for (const TradeRow& row : scenario) {
-            lines.push_back(
-                {row.label, text_of(row.error, "{:.3f}"),
-                 row.frame_ms ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
-                                            row.frame_ms->low, row.frame_ms->high)
-                              : "-",
-                 text_of(row.triangles, "{:.0f}"), text_of(row.gpu_bytes, "{:.1f}", kMebibyte),
-                 text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
+            lines.push_back({row.label, text_of(row.error, "{:.3f}"),
+                             row.frame_ms
+                                 ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
+                                               row.frame_ms->low, row.frame_ms->high)
+                                 : "-",
+                             text_of(row.triangles, "{:.0f}"),
+                             text_of(row.gpu_bytes, "{:.1f}", results::kMebibyte),
+                             text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
             for (const std::string& failure : row.failures) {
                 failures.push_back(row.label + ", " + failure);
             }

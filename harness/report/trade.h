@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "measure/statistics.h"
-#include "report/cell_groups.h"
+#include "results/cell_groups.h"
+#include "results/error_metric.h"
 
 namespace lodbench::report {
 
@@ -33,22 +34,9 @@ struct TradePoint {
 /// and finite.
 [[nodiscard]] double hypervolume(std::span<const TradePoint> points, const TradePoint& reference);
 
-/// Which summary of the pixel error is meant.
-enum class ErrorMetric { p999, max, rms };
-[[nodiscard]] const char* name_of(ErrorMetric metric);
-/// "p999", "max", "rms"; nothing for anything else.
-[[nodiscard]] std::optional<ErrorMetric> error_metric(const std::string& name);
-
-/// The pixel error of a cell (an object of cells.jsonl): of the real-time replay where there is
-/// one, for that is the surface which the frame times drew. Infinite where it is; nothing where it
-/// was not measured.
-[[nodiscard]] std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric);
-/// The median over the repetitions.
-[[nodiscard]] std::optional<double> pixel_error(const CellGroup& group, ErrorMetric metric);
-
 /// Milliseconds (median over the repetitions of the mean frame time) and pixels; infinite where
 /// absent.
-[[nodiscard]] TradePoint trade_point(const CellGroup& group, ErrorMetric metric);
+[[nodiscard]] TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric);
 
 /// A tenth worse than the worst finite point; nothing where there is none.
 [[nodiscard]] std::optional<TradePoint> reference_point(std::span<const TradePoint> points);
@@ -79,14 +67,14 @@ struct TradeRow {
 /// `knobs`: each method's quality knob by its id. Rows in order of scenario, method and knob.
 [[nodiscard]] std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
                                                const std::map<std::string, std::string>& knobs,
-                                               ErrorMetric metric, std::uint64_t seed);
+                                               results::ErrorMetric metric, std::uint64_t seed);
 
 /// Absent figures are null.
 [[nodiscard]] Json::Value to_json(const std::vector<TradeRow>& rows);
 
 /// Markdown, readable in a terminal: one table a scenario, and below it each method's hypervolume
 /// and that of all, against `reference` or each scenario's own, which is stated.
-[[nodiscard]] std::string trade_text(const std::vector<TradeRow>& rows, ErrorMetric metric,
+[[nodiscard]] std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric,
                                      const std::optional<TradePoint>& reference);
 
 }  // namespace lodbench::report

@@ -9,15 +9,14 @@
 #include <set>
 
 #include "api/error.h"
-#include "report/json.h"
-#include "report/result_folder.h"
-#include "report/results.h"
-#include "report/table.h"
-#include "run/cell_record.h"
+#include "base/files.h"
+#include "results/cell.h"
+#include "results/folder.h"
+#include "results/frame_columns.h"
+#include "results/json.h"
+#include "results/run_folder.h"
 #include "run/context.h"
 #include "run/exit_status.h"
-#include "run/frame_columns.h"
-#include "run/run_folder.h"
 #include "run/supervisor.h"
 
 namespace lodbench::run {
@@ -80,23 +79,23 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
 void check_context(const Json::Value& run, const std::string& where) {
     const auto expect_text = [&](const Json::Value& object, const char* key) {
         const Json::Value& value = object[key];
-        report::expect_field(value.isNull() || value.isString(), where, key, "text");
+        results::expect_field(value.isNull() || value.isString(), where, key, "text");
     };
     for (const char* key : {"tool_version", "commit", "command_line", "os", "cpu"}) {
         expect_text(run, key);
     }
     const Json::Value& gl = run["gl"];
-    report::expect_field(gl.isNull() || gl.isObject(), where, "gl", "an object or null");
+    results::expect_field(gl.isNull() || gl.isObject(), where, "gl", "an object or null");
     if (gl.isObject()) {
         for (const char* key : {"vendor", "renderer", "version", "timer_verdict"}) {
             expect_text(gl, key);
         }
     }
-    const Json::Value& warnings = report::get_array(run, "warnings", where);
-    report::expect_field(std::all_of(warnings.begin(), warnings.end(),
-                                     [](const auto& warning) { return warning.isString(); }),
-                         where, "warnings", "a list of texts");
-    report::expect_field(run["seed"].isUInt64(), where, "seed", "a whole number");
+    const Json::Value& warnings = results::get_array(run, "warnings", where);
+    results::expect_field(std::all_of(warnings.begin(), warnings.end(),
+                                      [](const auto& warning) { return warning.isString(); }),
+                          where, "warnings", "a list of texts");
+    results::expect_field(run["seed"].isUInt64(), where, "seed", "a whole number");
 }
 
 /// A campaign under way.
@@ -137,7 +136,7 @@ private:
     /// Whether the folder's run is taken up. Throws InputError where it holds one and --resume is
     /// not given.
     static bool resumes(const RunRequest& request) {
-        const bool known = holds_a_run(request.out);
+        const bool known = results::holds_a_run(request.out);
         if (known && !request.resume) {
             throw InputError(
                 fmt::format("{0}: this folder already holds a run; finish it with `lodbench run "
@@ -201,7 +200,7 @@ private:
     void write_scenarios(const Json::Value& scenarios) const {
         for (const Json::Value& scenario : scenarios) {
             const fs::path file = scenario_file(scenario["name"].asString());
-            if (!fs::exists(file)) report::write_whole(file, scenario["text"].asString());
+            if (!fs::exists(file)) base::write_whole(file, scenario["text"].asString());
         }
     }
 
@@ -214,13 +213,14 @@ private:
 
     void take_up() {
         const fs::path file = folder_.path() / "run.json";
-        run_ = report::parse_json(report::read_text(file), file.string());
-        if (!run_.isObject() || run_["schema_version"] != report::kSchemaVersion) {
-            throw InputError(fmt::format(
-                "{}: schema_version is {}, expected {}; resume it with the lodbench "
-                "that began it",
-                file.string(), run_.isObject() ? report::to_text(run_["schema_version"]) : "absent",
-                report::kSchemaVersion));
+        run_ = results::parse_json(base::read_text(file), file.string());
+        if (!run_.isObject() || run_["schema_version"] != results::kSchemaVersion) {
+            throw InputError(
+                fmt::format("{}: schema_version is {}, expected {}; resume it with the lodbench "
+                            "that began it",
+                            file.string(),
+                            run_.isObject() ? results::to_text(run_["schema_version"]) : "absent",
+                            results::kSchemaVersion));
         }
         try {
             check_context(run_, file.string());
@@ -233,16 +233,16 @@ private:
             refuse_other_request(file, plugins);
         } catch (const Json::Exception& error) {
             throw InputError(
-                fmt::format("{}: {}; {}", file.string(), error.what(), report::kCopyAgain));
+                fmt::format("{}: {}; {}", file.string(), error.what(), results::kCopyAgain));
         }
         for (const Json::Value& warning : run_["warnings"])
             outcome_.warnings.push_back(warning.asString());
         claim_names();
-        report::expect_plain_file(folder_.path() / "cells.jsonl");
+        results::expect_plain_file(folder_.path() / "cells.jsonl");
         outcome_.cells = folder_.repair();
         for (std::size_t i = 0; i < outcome_.cells.size(); ++i) {
             const fs::path lines = folder_.path() / "cells.jsonl";
-            report::check_cell(outcome_.cells[i], fmt::format("{}:{}", lines.string(), i + 1));
+            results::check_cell(outcome_.cells[i], fmt::format("{}:{}", lines.string(), i + 1));
             finished_.insert(outcome_.cells[i]["cell"].asString());
         }
     }
@@ -252,10 +252,11 @@ private:
         const Json::Value here = machine_context();
         for (const char* field : {"tool_version", "commit", "build_type", "compiler", "abi_tag"}) {
             if (here[field] == run_[field]) continue;
-            throw InputError(fmt::format(
-                "{}: '{}' is {} and that of this lodbench is {}; resume it with the "
-                "lodbench that began it, or begin anew with another --out",
-                file.string(), field, report::to_text(run_[field]), report::to_text(here[field])));
+            throw InputError(
+                fmt::format("{}: '{}' is {} and that of this lodbench is {}; resume it with the "
+                            "lodbench that began it, or begin anew with another --out",
+                            file.string(), field, results::to_text(run_[field]),
+                            results::to_text(here[field])));
         }
     }
 
@@ -269,7 +270,7 @@ private:
                 fmt::format("the OpenGL {0} has changed since the run began: gl.{0} was {1} and is "
                             "{2}; resume it with the driver and --device that began it, or begin "
                             "anew with another --out",
-                            field, report::to_text(began), report::to_text(seen[field])));
+                            field, results::to_text(began), results::to_text(seen[field])));
         }
     }
 
@@ -298,7 +299,7 @@ private:
         cell.spec.scenario_origin = plan_.origins[which];
         const CellLimits limits{scenario.cell_time_limit_s, scenario.frame_time_limit_s,
                                 scenario.memory_limit_bytes};
-        const CellResult result =
+        const results::CellResult result =
             run_cell(cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
                      [&](int done, int total) {
                          observer_.cell_progress(cell, index, plan_.cells.size(),
@@ -307,12 +308,14 @@ private:
         if (!result.environment_error.empty()) throw EnvironmentError(result.environment_error);
         if (!result.input_error.empty()) throw InputError(result.input_error);
         Json::Value record =
-            cell_record(cell.spec, cell.scenario, cell.params, result, scenario.measure.budget_ms);
+            results::cell_record({cell.spec.id, cell.scenario, cell.spec.method, cell.params,
+                                  cell.spec.repetition, cell.spec.seed},
+                                 result, scenario.measure.budget_ms);
         refuse_changed_input(record);
         if (!result.gl_renderer.empty()) refuse_other_renderer(gl_context(result));
         for (const std::string& warning : result.flight_warnings) warn_once(warning);
-        const std::string csv = frames_csv(result.frames);
-        record["frames_checksum"] = report::checksum_of(csv);
+        const std::string csv = results::frames_csv(result.frames);
+        record["frames_checksum"] = results::checksum_of(csv);
         folder_.add_cell(cell.spec.id, record, csv);
         finished_.insert(cell.spec.id);
         outcome_.cells.push_back(record);
@@ -333,42 +336,15 @@ private:
     }
 
     void write_run() {
-        report::write_whole(folder_.path() / "run.json", report::to_text(run_, true) + "\n");
+        base::write_whole(folder_.path() / "run.json", results::to_text(run_, true) + "\n");
     }
 
     void write_summary() {
-        const auto line = [this](const char* title, const Json::Value& value) {
-            return value.isNull()
-                       ? std::string()
-                       : fmt::format("- {}: {}\n", title, report::markdown_text(value.asString()));
-        };
-        // Read as a comment: the tables first, what they depend on folded away below.
-        std::string text = report::markdown_table(report::table_rows(outcome_.cells, plan_.seed));
-        const auto fold = [&text](const std::string& title) {
-            text += fmt::format("\n<details><summary>{}</summary>\n\n", title);
-        };
-        if (!outcome_.warnings.empty()) {
-            fold(fmt::format("Warnings: {}", outcome_.warnings.size()));
-            for (const std::string& warning : outcome_.warnings) {
-                text += fmt::format("- {}\n", report::markdown_text(warning));
-            }
-            text += "\n</details>\n";
-        }
-        fold("Context");
-        text += line("lodbench", run_["tool_version"]) + line("commit", run_["commit"]);
-        text += line("command", run_["command_line"]) + line("system", run_["os"]) +
-                line("CPU", run_["cpu"]);
-        if (run_["gl"].isObject()) {
-            text +=
-                line("renderer", run_["gl"]["renderer"]) + line("OpenGL", run_["gl"]["version"]);
-            text += line("timer", run_["gl"]["timer_verdict"]);
-        }
-        text += fmt::format("- seed: {}\n\n</details>\n", plan_.seed);
-        report::write_whole(folder_.path() / "summary.md", text);
+        base::write_whole(folder_.path() / "summary.md", observer_.summary(outcome_, run_));
     }
 
     [[nodiscard]] fs::path scenario_file(const std::string& name) const {
-        report::expect_file_name(name, "scenario", (folder_.path() / "run.json").string());
+        results::expect_file_name(name, "scenario", (folder_.path() / "run.json").string());
         return folder_.path() / "scenarios" / (name + ".toml");
     }
 
@@ -385,7 +361,7 @@ private:
     const fs::path& program_;
     CampaignObserver& observer_;
     const bool resumed_;
-    RunFolder folder_;
+    results::RunFolder folder_;
     Plan plan_;
     Json::Value run_;
     std::set<std::string> finished_;

@@ -12,7 +12,9 @@
 
 namespace lodbench::run {
 
-/// Is told how a campaign goes on.
+struct CampaignOutcome;
+
+/// Progress callbacks of a campaign.
 class CampaignObserver {
 public:
     CampaignObserver() = default;
@@ -24,6 +26,11 @@ public:
                                std::size_t /*count*/, double /*fraction*/) {}
     virtual void cell_finished(const PlannedCell& /*cell*/, std::size_t /*index*/,
                                std::size_t /*count*/, const Json::Value& /*record*/) {}
+    /// The text of summary.md, asked for at the end; `run` is the object of run.json.
+    [[nodiscard]] virtual std::string summary(const CampaignOutcome& /*outcome*/,
+                                              const Json::Value& /*run*/) {
+        return {};
+    }
 };
 
 struct CampaignOutcome {

@@ -1,17 +1,13 @@
 #pragma once
-// One cell of a campaign: method x scenario x setting x repetition, and what came of it.
+// One cell of a campaign: method x scenario x setting x repetition, and flying it.
 
-#include <json/value.h>
-
+#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
+#include <string_view>
 
-#include "measure/statistics.h"
-#include "measure/truth.h"
-#include "run/plugin_library.h"
+#include "results/cell.h"
+#include "run/settings.h"
 #include "run/vital_signs.h"
 #include "scenario/scenario.h"
 
@@ -33,59 +29,13 @@ struct CellSpec {
     std::filesystem::path out;  ///< results folder
 };
 
-enum class CellStatus { ok, skipped, failed, crashed, timeout };
-
-template <typename T>
-struct Range {
-    double mean = 0;
-    T min{}, max{};
-};
-
-/// One row of frames/<cell>.csv. Counts and the truth come from the lockstep replay, times from the
-/// timing replay.
-struct FrameRecord {
-    int frame = 0;
-    double wall_ms = 0, select_ms = 0, submit_ms = 0, cpu_ms = 0;
-    std::optional<double> gpu_ms;
-    std::optional<std::uint64_t> triangles, draw_calls, uploaded_bytes, triangles_nondegenerate;
-    measure::FrameTruth truth;
-};
-
-/// What a cell measured; every absent value is null in cells.jsonl.
-struct CellResult {
-    CellStatus status = CellStatus::failed;
-    std::string reason;  ///< names plugin and call; empty when ok
-    /// Not the method's failure: what the environment refused (no device, no disk) or what is wrong
-    /// with the input (terrain, path), in words. The campaign ends there and can be resumed; both
-    /// empty else.
-    std::string environment_error, input_error;
-    std::vector<FrameRecord> frames;
-    double prepare_s = 0, prepare_cpu_s = 0, upload_s = 0;
-    std::optional<std::uint64_t> gpu_bytes, peak_rss_bytes;
-    /// What the method asked of the terrain, and what was read from disk for it, when the timing
-    /// replay ended.
-    std::uint64_t samples_served = 0, tiles_served = 0, terrain_bytes_read = 0;
-    std::uint64_t samples_prepared = 0;  ///< of the samples served, those while it prepared
-    std::vector<std::string> modules;    ///< of lodbench, that the cell's process loaded
-    Counters counters;  ///< of the lockstep replay: means over its frames, of `..._so_far` the last
-    std::string depth_hash;  ///< at the randomly chosen frame, lockstep
-    std::string shots_hash;  ///< of the depth images at the frames of the pictures, lockstep
-    std::string terrain_name, terrain_checksum;
-    std::string plugin_checksum;  ///< of the plugin file: 16 hex digits
-    std::optional<double> claimed_px;
-    Json::Value truth;  ///< as truth_record gives it; null where the truth was not measured
-    std::vector<std::string> warnings;
-    std::vector<std::string> flight_warnings;  ///< of terrain and cameras: the same for every cell
-    // Context as the child saw it.
-    std::string gl_vendor, gl_renderer, gl_version, device_description;
-    bool software = false;
-    std::string timer_verdict;
-    int warmup_frames = 0, frames_in_flight = 0;  ///< of the timing replay
-};
+/// What the child process is given. Throws InputError (reading) for what is damaged.
+[[nodiscard]] std::string write_spec(const CellSpec& spec);
+[[nodiscard]] CellSpec read_spec(std::string_view text, const std::string& where);
 
 /// Flies one cell in this process: load, prepare, timing replay, lockstep replay with the truth and
 /// the pictures, and for asynchronous methods the real-time replay. Throws
 /// nothing: whatever goes wrong is in the result. Reports each call and frame to `signs`.
-[[nodiscard]] CellResult fly_cell(const CellSpec& spec, VitalSigns& signs);
+[[nodiscard]] results::CellResult fly_cell(const CellSpec& spec, VitalSigns& signs);
 
 }  // namespace lodbench::run

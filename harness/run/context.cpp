@@ -12,7 +12,8 @@
 #include <string>
 
 #include "api/abi_tag.h"
-#include "report/results.h"
+#include "base/files.h"
+#include "results/json.h"
 
 namespace lodbench::run {
 
@@ -95,7 +96,7 @@ std::string utc_now() {
 
 Json::Value machine_context() {
     Json::Value json;
-    json["schema_version"] = report::kSchemaVersion;
+    json["schema_version"] = results::kSchemaVersion;
     json["tool_version"] = LODBENCH_VERSION;
     json["commit"] = text_or_null(LODBENCH_COMMIT);
     json["build_type"] = text_or_null(LODBENCH_BUILD_TYPE);
@@ -116,7 +117,7 @@ Json::Value machine_context() {
     return json;
 }
 
-Json::Value gl_context(const CellResult& result) {
+Json::Value gl_context(const results::CellResult& result) {
     Json::Value json;
     json["vendor"] = result.gl_vendor;
     json["renderer"] = result.gl_renderer;

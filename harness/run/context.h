@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "run/cell.h"
+#include "results/cell.h"
 
 namespace lodbench::run {
 
@@ -28,6 +28,6 @@ namespace lodbench::run {
 [[nodiscard]] std::string utc_now();
 
 /// What a cell's child saw of its GL context.
-[[nodiscard]] Json::Value gl_context(const CellResult& result);
+[[nodiscard]] Json::Value gl_context(const results::CellResult& result);
 
 }  // namespace lodbench::run

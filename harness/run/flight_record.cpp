@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "api/error.h"
+#include "base/files.h"
 #include "measure/needed_tiles.h"
-#include "report/json.h"
-#include "report/png.h"
-#include "report/results.h"
+#include "picture/png.h"
+#include "results/json.h"
 #include "run/flight_check.h"
 
 namespace lodbench::run {
@@ -100,8 +100,8 @@ Json::Value pair_json(double x, double y) {
 std::vector<std::string> recorded_warnings(const fs::path& file) {
     std::vector<std::string> warnings;
     try {
-        const Json::Value json = report::parse_json(report::read_text(file), file.string());
-        for (const Json::Value& warning : report::get_array(json, "warnings", file.string())) {
+        const Json::Value json = results::parse_json(base::read_text(file), file.string());
+        for (const Json::Value& warning : results::get_array(json, "warnings", file.string())) {
             warnings.push_back(warning.asString());
         }
     } catch (const InputError&) {
@@ -114,7 +114,7 @@ std::vector<std::string> recorded_warnings(const fs::path& file) {
 
 }  // namespace
 
-report::Image hillshade(const Terrain& terrain, int largest) {
+picture::Image hillshade(const Terrain& terrain, int largest) {
     const TerrainInfo& info = terrain.info();
     const double extent_x = info.spacing.x * (info.columns - 1);
     const double extent_y = info.spacing.y * (info.rows - 1);
@@ -142,7 +142,7 @@ report::Image hillshade(const Terrain& terrain, int largest) {
     const auto steep = sizes.begin() + std::ptrdiff_t(sizes.size() * 49 / 50);
     std::ranges::nth_element(sizes, steep);
     const double unit = *steep > 0 ? *steep : 1;
-    report::Image image = report::Image::filled(width, height, {});
+    picture::Image image = picture::Image::filled(width, height, {});
     for (std::size_t i = 0; i < slopes.size(); ++i) {
         const double tone = kPlainTone + kToneRange * std::tanh(slopes[i] / unit);
         const auto level = std::uint8_t(std::clamp(std::lround(tone), 0L, 255L));
@@ -158,12 +158,13 @@ std::vector<std::string> record_flight(const fs::path& out, const std::string& n
     std::error_code ignored;
     if (fs::exists(file, ignored)) return recorded_warnings(file);
     fs::create_directories(file.parent_path(), ignored);
-    const report::Image map = hillshade(terrain, kLargestMap);
-    report::write_png(out / "flights" / (name + "__hillshade.png"), map.width, map.height, map.rgb);
+    const picture::Image map = hillshade(terrain, kLargestMap);
+    picture::write_png(out / "flights" / (name + "__hillshade.png"), map.width, map.height,
+                       map.rgb);
 
     const TerrainInfo& info = terrain.info();
     Json::Value json;
-    json["schema_version"] = report::kSchemaVersion;
+    json["schema_version"] = results::kSchemaVersion;
     json["scenario"] = name;
     json["terrain"] = info.name;
     json["rows"] = info.rows;
@@ -196,7 +197,7 @@ std::vector<std::string> record_flight(const fs::path& out, const std::string& n
     const std::vector<std::string> warnings = check.warnings(name);
     json["warnings"] = Json::arrayValue;
     for (const std::string& warning : warnings) json["warnings"].append(warning);
-    report::write_whole(file, report::seal(json) + "\n");
+    base::write_whole(file, results::seal(json) + "\n");
     return warnings;
 }
 

@@ -9,13 +9,13 @@
 
 #include "api/camera.h"
 #include "api/terrain.h"
-#include "report/canvas.h"
+#include "picture/canvas.h"
 
 namespace lodbench::run {
 
 /// The ground from above, lit from the north-west, at most `largest` pixels wide and high: each
 /// pixel shows the mean height of its samples, of a large terrain those of a coarser level.
-[[nodiscard]] report::Image hillshade(const Terrain& terrain, int largest);
+[[nodiscard]] picture::Image hillshade(const Terrain& terrain, int largest);
 
 /// Writes flights/<name>.json and flights/<name>__hillshade.png into the results folder `out`,
 /// unless they are there. `camera_at` gives the camera of each of the frames. Returns what is to be

@@ -14,11 +14,11 @@
 #include <thread>
 #include <utility>
 
+#include "base/files.h"
 #include "base/hash.h"
 #include "base/modules.h"
 #include "measure/timer_verdict.h"
-#include "report/png.h"
-#include "report/results.h"
+#include "picture/png.h"
 #include "run/cell.h"
 #include "run/flight_record.h"
 #include "run/frame_measurer.h"
@@ -59,13 +59,13 @@ std::optional<std::uint64_t> peak_rss_bytes() {
 
 std::string file_checksum(const std::filesystem::path& file) {
     base::Fnv1a hash;
-    for (const char byte : report::read_text(file)) hash.add(static_cast<unsigned char>(byte));
+    for (const char byte : base::read_text(file)) hash.add(static_cast<unsigned char>(byte));
     return hash.hex();
 }
 
 class Flight {
 public:
-    Flight(const CellSpec& spec, VitalSigns& signs, CellResult& result)
+    Flight(const CellSpec& spec, VitalSigns& signs, results::CellResult& result)
         : spec_(spec), signs_(signs), result_(result), scenario_(read_scenario(spec)) {}
 
     void fly() {
@@ -150,7 +150,7 @@ private:
 
     const CellSpec& spec_;
     VitalSigns& signs_;
-    CellResult& result_;
+    results::CellResult& result_;
     scenario::Scenario scenario_;
     std::shared_ptr<const Terrain> terrain_;          ///< what the harness reads
     std::shared_ptr<const Terrain> methods_terrain_;  ///< the same; its reading is the method's own
@@ -296,7 +296,7 @@ void Flight::fly_for_time() {
     result_.frames_in_flight = timer.frames_in_flight();
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         const FrameTimes& times = timer.frames()[std::size_t(frame)];
-        FrameRecord& record = result_.frames[std::size_t(frame)];
+        results::FrameRecord& record = result_.frames[std::size_t(frame)];
         record.frame = frame;
         record.wall_ms = times.wall_ms;
         record.select_ms = times.select_ms;
@@ -322,7 +322,7 @@ void Flight::fly_in_lockstep() {
     base::Fnv1a shots_hash;
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         begin_frame(frame);
-        FrameRecord& record = result_.frames[std::size_t(frame)];
+        results::FrameRecord& record = result_.frames[std::size_t(frame)];
         const std::uint64_t uploaded = stage_->method_uploaded_bytes();
         stage_->select(camera_at(frame), clock_at(frame));
         stage_->settle();
@@ -359,7 +359,7 @@ void Flight::fly_in_lockstep() {
     for (const auto& [name, sum] : sums) {
         result_.counters.emplace_back(name, sum / scenario_.frames);
     }
-    const auto empty = std::ranges::count(result_.frames, 0U, &FrameRecord::triangles);
+    const auto empty = std::ranges::count(result_.frames, 0U, &results::FrameRecord::triangles);
     if (empty > 0) {
         result_.warnings.push_back(
             fmt::format("drew no triangle in {} of {} frames", empty, scenario_.frames));
@@ -375,7 +375,8 @@ void Flight::measure_frame(int frame) {
     const bool measured = frame % every == 0 || economy;
     const bool successor = measures_truth() && frame > 0 && (frame - 1) % every == 0;
     if (!measured && !successor) return;
-    FrameRecord* const before = successor ? &result_.frames[std::size_t(frame - 1)] : nullptr;
+    results::FrameRecord* const before =
+        successor ? &result_.frames[std::size_t(frame - 1)] : nullptr;
     measurer_->take(frame, result_.frames[std::size_t(frame)], before);
     if (measured) measurer_->measure(result_.frames[std::size_t(frame)]);
     if (!economy) return;
@@ -433,22 +434,22 @@ void Flight::shoot(int frame) {
     };
     const Viewport& size = scenario_.viewport;
     stage_->draw_picture();
-    report::write_png(path(""), size.width, size.height, stage_->read_color());
+    picture::write_png(path(""), size.width, size.height, stage_->read_color());
     stage_->draw_picture(true);
-    report::write_png(path("__wireframe"), size.width, size.height, stage_->read_color());
+    picture::write_png(path("__wireframe"), size.width, size.height, stage_->read_color());
 }
 
 }  // namespace
 
-CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
-    CellResult result;
+results::CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
+    results::CellResult result;
     std::unique_ptr<Flight> flight;
     const auto where = [&] { return flight ? flight->where() : std::string(); };
     // Descriptors, limits and the plugin's own file are the plugin's to spoil; what was asked for
     // had been checked before the plugin was opened.
     const auto blame = [&](const char* words, std::string& else_of) {
         if (flight && flight->plugin_opened()) {
-            result.status = CellStatus::failed;
+            result.status = results::CellStatus::failed;
             result.reason = words + where();
         } else {
             else_of = words;
@@ -457,34 +458,34 @@ CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
     try {
         flight = std::make_unique<Flight>(spec, signs, result);
         flight->fly();
-        result.status = CellStatus::ok;
+        result.status = results::CellStatus::ok;
         result.modules = base::loaded_modules();
     } catch (const MethodSkipped& skipped) {
-        result.status = CellStatus::skipped;
+        result.status = results::CellStatus::skipped;
         result.reason = skipped.what();
     } catch (const TerrainError& error) {
         // Met by the harness: the path follows the ground, or the truth needs the whole. It is this
         // terrain's, and other cells may fly another.
-        result.status = CellStatus::failed;
+        result.status = results::CellStatus::failed;
         result.reason = fmt::format("reading the terrain: {}{}", error.what(), where());
-    } catch (const report::DiskFullError& error) {
+    } catch (const base::DiskFullError& error) {
         result.environment_error = error.what();  // no plugin's to spoil
     } catch (const EnvironmentError& error) {
         blame(error.what(), result.environment_error);
     } catch (const InputError& error) {
         blame(error.what(), result.input_error);
     } catch (const std::bad_alloc&) {
-        result.status = CellStatus::failed;
+        result.status = results::CellStatus::failed;
         result.reason = "memory ran out" + where();
     } catch (const std::exception& error) {
-        result.status = CellStatus::failed;
+        result.status = results::CellStatus::failed;
         result.reason = error.what() + where();
     }
     flight.reset();  // what the method does while it is destroyed is warned of as well
     // A plugin's words may hold anything; a reason is one line.
     std::ranges::replace_if(
         result.reason, [](unsigned char c) { return c < 0x20; }, ' ');
-    if (result.status != CellStatus::ok) result.frames.clear();
+    if (result.status != results::CellStatus::ok) result.frames.clear();
     return result;
 }
 

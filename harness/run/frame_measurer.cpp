@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "report/png.h"
-#include "report/truth_picture.h"
-#include "run/truth_record.h"
+#include "picture/png.h"
+#include "picture/truth_picture.h"
+#include "results/truth_record.h"
 
 namespace lodbench::run {
 
@@ -29,7 +29,8 @@ measure::CapturedSurface FrameMeasurer::capture() {
     return surface;
 }
 
-void FrameMeasurer::take(int frame, const FrameRecord& record, FrameRecord* before) {
+void FrameMeasurer::take(int frame, const results::FrameRecord& record,
+                         results::FrameRecord* before) {
     measure::CapturedSurface surface = capture();
     if (surface.triangle_count() != record.triangles) {
         throw MethodFailure(fmt::format(
@@ -43,7 +44,7 @@ void FrameMeasurer::take(int frame, const FrameRecord& record, FrameRecord* befo
                  before == nullptr ? nullptr : &before->truth);
 }
 
-void FrameMeasurer::measure(FrameRecord& record) {
+void FrameMeasurer::measure(results::FrameRecord& record) {
     record.triangles_nondegenerate = nondegenerate_;
     if (!meter_) return;
     stage_->draw_picture();
@@ -64,10 +65,10 @@ void FrameMeasurer::measure_realtime(int frame) {
     meter_->measure_realtime(frame, stage_->camera(), std::move(surface), stage_->read_depth());
 }
 
-void FrameMeasurer::finish(CellResult& result) const {
+void FrameMeasurer::finish(results::CellResult& result) const {
     if (!meter_) return;
     const measure::TruthSummary summary = meter_->summary();
-    result.truth = truth_record(summary);
+    result.truth = results::truth_record(summary);
     if (summary.walls > 0) {
         result.warnings.push_back(fmt::format(
             "up to {} upright triangles of a frame stand above the surface, where no error is "
@@ -88,7 +89,7 @@ void FrameMeasurer::write_picture(const std::filesystem::path& path,
     if (!meter_ || !meter_->worst_frame()) return;
     const measure::WorstFrame& worst = *meter_->worst_frame();
     const measure::ReferenceTerrain& terrain = meter_->terrain();
-    report::TruthPicture picture;
+    picture::TruthPicture picture;
     picture.camera = worst.camera;
     picture.terrain = terrain.info();
     picture.drawn_rgb = worst.drawn_rgb;
@@ -117,7 +118,7 @@ void FrameMeasurer::write_picture(const std::filesystem::path& path,
     // colour of their own.
     const double p999 = worst.truth.pixel_p999_px.value_or(0);
     const double greatest = worst.pixel_max_covered.value_or(0);
-    picture.scale_px = report::nice_scale(std::isfinite(p999) && p999 > 0 ? p999 : greatest);
+    picture.scale_px = picture::nice_scale(std::isfinite(p999) && p999 > 0 ? p999 : greatest);
     const auto px = [](const std::optional<double>& value) {
         return value ? fmt::format("{:.3g} px", *value) : std::string("-");
     };
@@ -129,8 +130,8 @@ void FrameMeasurer::write_picture(const std::filesystem::path& path,
         fmt::format("crack pixels {}, sky against terrain {}, uncovered samples {}",
                     worst.truth.crack_pixels.value_or(0), worst.truth.silhouette_pixels.value_or(0),
                     worst.truth.uncovered_samples.value_or(0))};
-    const report::Image image = report::draw(picture);
-    report::write_png(path, image.width, image.height, image.rgb);
+    const picture::Image image = picture::draw(picture);
+    picture::write_png(path, image.width, image.height, image.rgb);
 }
 
 }  // namespace lodbench::run

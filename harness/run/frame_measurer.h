@@ -27,17 +27,17 @@ public:
     /// Captures the frozen selection; what popped since the frame before goes into `before`, where
     /// that was measured. Throws MethodFailure for vertices that are not finite and for triangles
     /// that `record` counts and that did not go through gl::Device.
-    void take(int frame, const FrameRecord& record, FrameRecord* before);
+    void take(int frame, const results::FrameRecord& record, results::FrameRecord* before);
     /// Measures the frame that was taken last into its record: the non-degenerate triangles, and
     /// the truth.
-    void measure(FrameRecord& record);
+    void measure(results::FrameRecord& record);
     /// Of the frame that was measured last, how few triangles would have done.
     void find_economy();
     /// The frozen selection as the real-time replay has it.
     void measure_realtime(int frame);
 
     /// The truth about the flight; nothing without it.
-    void finish(CellResult& result) const;
+    void finish(results::CellResult& result) const;
     /// The worst frame's picture as PNG; does nothing where no frame was measured.
     void write_picture(const std::filesystem::path& path, const std::string& title) const;
 

@@ -6,9 +6,10 @@
 #include <set>
 
 #include "api/error.h"
-#include "report/json.h"
-#include "report/results.h"
-#include "run/run_folder.h"
+#include "base/files.h"
+#include "measure/statistics.h"
+#include "results/json.h"
+#include "results/run_folder.h"
 
 namespace lodbench::run {
 
@@ -63,23 +64,23 @@ private:
     std::set<std::string> told_;
 };
 
-void write_record(const fs::path& file, const report::MatchRecord& record) {
-    report::write_whole(file, report::seal(to_json(record), true) + "\n");
+void write_record(const fs::path& file, const results::MatchRecord& record) {
+    base::write_whole(file, results::seal(to_json(record), true) + "\n");
 }
 
 /// The folder, locked. Says whose it is before the first probe: by a match.json that is as yet
 /// without methods. Throws InputError where the folder holds something else.
-RunFolder begin_search(const RunRequest& request, const report::MatchTarget& target) {
+results::RunFolder begin_search(const RunRequest& request, const results::MatchTarget& target) {
     const fs::path file = request.out / "match.json";
     if (!fs::exists(file)) {
-        if (holds_a_run(request.out)) {
+        if (results::holds_a_run(request.out)) {
             throw InputError(
                 fmt::format("{}: the run in this folder was not begun by match; "
                             "choose another with --out",
                             request.out.string()));
         }
-        RunFolder folder(fs::absolute(request.out).lexically_normal());
-        report::MatchRecord begun;
+        results::RunFolder folder(fs::absolute(request.out).lexically_normal());
+        results::MatchRecord begun;
         begun.target = target;
         write_record(file, begun);
         return folder;
@@ -90,9 +91,9 @@ RunFolder begin_search(const RunRequest& request, const report::MatchTarget& tar
                         "same command and --resume, or choose another with --out",
                         request.out.string()));
     }
-    const report::MatchTarget begun =
-        report::read_match(report::parse_sealed(report::read_text(file), file.string()),
-                           file.string())
+    const results::MatchTarget begun =
+        results::read_match(results::parse_sealed(base::read_text(file), file.string()),
+                            file.string())
             .target;
     if (begun.words() != target.words() || begun.tolerance != target.tolerance) {
         throw InputError(fmt::format(
@@ -101,17 +102,17 @@ RunFolder begin_search(const RunRequest& request, const report::MatchTarget& tar
             file.string(), begun.words(), 100 * begun.tolerance, target.words(),
             100 * target.tolerance));
     }
-    return RunFolder(fs::absolute(request.out).lexically_normal());
+    return results::RunFolder(fs::absolute(request.out).lexically_normal());
 }
 
 }  // namespace
 
-report::MatchRecord match_record(const report::MatchTarget& target,
-                                 const std::vector<MatchedMethod>& methods) {
-    report::MatchRecord record;
+results::MatchRecord match_record(const results::MatchTarget& target,
+                                  const std::vector<MatchedMethod>& methods) {
+    results::MatchRecord record;
     record.target = target;
     for (const MatchedMethod& method : methods) {
-        report::MatchRecord::Method& entry = record.methods.emplace_back();
+        results::MatchRecord::Method& entry = record.methods.emplace_back();
         entry.method = method.method;
         if (!method.failure.empty()) entry.failure = method.failure;
         if (!method.knob) continue;
@@ -129,10 +130,10 @@ report::MatchRecord match_record(const report::MatchTarget& target,
     return record;
 }
 
-MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, int most_probes,
+MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, int most_probes,
                    const fs::path& program, CampaignObserver& observer,
                    const ProbeObserver& probed) {
-    const bool of_the_truth = target.quantity == report::MatchTarget::Quantity::pixel_error;
+    const bool of_the_truth = target.quantity == results::MatchTarget::Quantity::pixel_error;
     RunRequest request = asked;
     if (of_the_truth) request.overrides.truth = true;
     if (request.scenarios.size() > 1) {
@@ -150,7 +151,7 @@ MatchOutcome match(const RunRequest& asked, const report::MatchTarget& target, i
     }
 
     const bool fresh = !fs::exists(request.out / "match.json");
-    std::optional<RunFolder> folder = begin_search(request, target);
+    std::optional<results::RunFolder> folder = begin_search(request, target);
 
     const auto settings_of = [&request](const std::string& method) {
         std::vector<std::string> settings;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "report/match_record.h"
+#include "results/match.h"
 #include "run/campaign.h"
 #include "run/knob.h"
 
@@ -35,12 +35,12 @@ using ProbeObserver = std::function<void(const MatchedMethod& method, const Prob
 /// flies what was found into <out>, and writes <out>/match.json. The request names one scenario, or
 /// none for the demo. Throws InputError for a request that sets a knob that is to be found, or for
 /// a folder that is in use; EnvironmentError as run_campaign.
-[[nodiscard]] MatchOutcome match(const RunRequest& request, const report::MatchTarget& target,
+[[nodiscard]] MatchOutcome match(const RunRequest& request, const results::MatchTarget& target,
                                  int most_probes, const std::filesystem::path& program,
                                  CampaignObserver& observer, const ProbeObserver& probed);
 
 /// As match.json holds it.
-[[nodiscard]] report::MatchRecord match_record(const report::MatchTarget& target,
-                                               const std::vector<MatchedMethod>& methods);
+[[nodiscard]] results::MatchRecord match_record(const results::MatchTarget& target,
+                                                const std::vector<MatchedMethod>& methods);
 
 }  // namespace lodbench::run

@@ -7,11 +7,11 @@
 #include <set>
 
 #include "api/error.h"
+#include "base/files.h"
 #include "base/hash.h"
-#include "report/json.h"
-#include "report/result_folder.h"
-#include "report/results.h"
-#include "run/cell_record.h"
+#include "results/cell.h"
+#include "results/folder.h"
+#include "results/json.h"
 #include "run/locations.h"
 
 namespace lodbench::run {
@@ -255,7 +255,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
 Json::Value plan_to_json(const Plan& plan) {
     Json::Value cells = Json::arrayValue;
     for (const PlannedCell& cell : plan.cells) {
-        Json::Value json = report::parse_json(write_spec(cell.spec), "a cell");
+        Json::Value json = results::parse_json(write_spec(cell.spec), "a cell");
         // Where the results lie and where from they are read is known by whoever opens the folder.
         for (const char* key : {"out", "scenario_file", "scenario_origin"}) json.removeMember(key);
         json["scenario"] = cell.scenario;
@@ -268,27 +268,27 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out,
                     const std::vector<PluginListing>& plugins) {
     const std::string where = (out / "run.json").string();
     Plan plan;
-    for (const Json::Value& json : report::get_array(run, "scenarios", where)) {
-        const std::string name = report::get_string(json, "name", where);
-        report::expect_file_name(name, "scenario", where);
+    for (const Json::Value& json : results::get_array(run, "scenarios", where)) {
+        const std::string name = results::get_string(json, "name", where);
+        results::expect_file_name(name, "scenario", where);
         const fs::path file = out / "scenarios" / (name + ".toml");
-        report::expect_plain_file(file);
-        const fs::path origin = report::get_string(json, "file", where);
-        plan.scenarios.push_back(scenario::parse_scenario(report::read_text(file), origin));
+        results::expect_plain_file(file);
+        const fs::path origin = results::get_string(json, "file", where);
+        plan.scenarios.push_back(scenario::parse_scenario(base::read_text(file), origin));
         plan.origins.push_back(origin);
     }
-    for (Json::Value json : report::get_array(run, "cells", where)) {
+    for (Json::Value json : results::get_array(run, "cells", where)) {
         for (const char* key : {"out", "scenario_file", "scenario_origin"}) json[key] = "";
         PlannedCell cell;
-        cell.spec = read_spec(report::to_text(json), where);
-        report::expect_file_name(cell.spec.id, "cell", where);
-        cell.scenario = report::get_string(json, "scenario", where);
+        cell.spec = read_spec(results::to_text(json), where);
+        results::expect_file_name(cell.spec.id, "cell", where);
+        cell.scenario = results::get_string(json, "scenario", where);
         if (std::ranges::find(plan.scenarios, cell.scenario, &scenario::Scenario::name) ==
             plan.scenarios.end()) {
             throw InputError(
                 fmt::format("{}: cell '{}' flies the scenario '{}', which is not "
                             "among its scenarios; {}",
-                            where, cell.spec.id, cell.scenario, report::kCopyAgain));
+                            where, cell.spec.id, cell.scenario, results::kCopyAgain));
         }
         const MethodInfo& method = method_again(plugins, cell.spec.method);
         cell.spec.plugin = method.plugin;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "run/cell.h"
+#include "run/plugin_library.h"
 #include "scenario/scenario.h"
 
 namespace lodbench::run {

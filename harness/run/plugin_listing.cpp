@@ -14,7 +14,7 @@
 
 #include "api/error.h"
 #include "base/child_process.h"
-#include "report/json.h"
+#include "results/json.h"
 #include "run/last_words.h"
 #include "run/loader_log.h"
 #include "run/locations.h"
@@ -60,35 +60,35 @@ Json::Value to_json(const MethodInfo& method) {
 
 ParamInfo read_param(const Json::Value& json, const std::string& where) {
     ParamInfo param;
-    param.name = report::get_string(json, "name", where);
-    param.type = ParamType(int(report::get_number(json, "type", where)));
-    param.default_number = report::get_number(json, "default", where);
-    param.minimum = report::get_number(json, "minimum", where);
-    param.maximum = report::get_number(json, "maximum", where);
-    param.default_choice = report::get_string(json, "default_choice", where);
-    for (const Json::Value& choice : report::get_array(json, "choices", where)) {
+    param.name = results::get_string(json, "name", where);
+    param.type = ParamType(int(results::get_number(json, "type", where)));
+    param.default_number = results::get_number(json, "default", where);
+    param.minimum = results::get_number(json, "minimum", where);
+    param.maximum = results::get_number(json, "maximum", where);
+    param.default_choice = results::get_string(json, "default_choice", where);
+    for (const Json::Value& choice : results::get_array(json, "choices", where)) {
         param.choices.push_back(choice.asString());
     }
-    param.help = report::get_string(json, "help", where);
+    param.help = results::get_string(json, "help", where);
     return param;
 }
 
 MethodInfo read_method(const Json::Value& json, const std::string& where) {
     MethodInfo method;
     method.plugin = where;
-    method.id = report::get_string(json, "id", where);
-    method.title = report::get_string(json, "title", where);
-    method.citation = report::get_string(json, "citation", where);
-    method.version = report::get_string(json, "version", where);
-    method.capabilities = std::uint32_t(report::get_number(json, "capabilities", where));
-    for (const Json::Value& name : report::get_array(json, "gl_extensions", where)) {
+    method.id = results::get_string(json, "id", where);
+    method.title = results::get_string(json, "title", where);
+    method.citation = results::get_string(json, "citation", where);
+    method.version = results::get_string(json, "version", where);
+    method.capabilities = std::uint32_t(results::get_number(json, "capabilities", where));
+    for (const Json::Value& name : results::get_array(json, "gl_extensions", where)) {
         method.gl_extensions.push_back(name.asString());
     }
-    for (const Json::Value& param : report::get_array(json, "params", where)) {
+    for (const Json::Value& param : results::get_array(json, "params", where)) {
         method.params.push_back(read_param(param, where));
     }
-    method.quality_knob = report::get_string(json, "quality_knob", where);
-    method.claimed_bound = report::get_string(json, "claimed_bound", where);
+    method.quality_knob = results::get_string(json, "quality_knob", where);
+    method.claimed_bound = results::get_string(json, "claimed_bound", where);
     return method;
 }
 
@@ -117,7 +117,7 @@ int tell(const fs::path& plugin, int listing, int output) {
     } catch (const InputError& error) {
         json["refusal"] = error.what();
     }
-    return base::write_all(listing, report::to_text(json)) ? 0 : 1;
+    return base::write_all(listing, results::to_text(json)) ? 0 : 1;
 }
 
 /// An id belongs to the earliest folder that holds it. Two holders in that folder are both refused,
@@ -190,9 +190,9 @@ PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time
                         child.ending().words(), last_words(base::read_all(output))));
     }
     try {
-        const Json::Value json = report::parse_json(text, plugin.string());
-        result.refusal = report::get_string(json, "refusal", plugin.string());
-        for (const Json::Value& method : report::get_array(json, "methods", plugin.string())) {
+        const Json::Value json = results::parse_json(text, plugin.string());
+        result.refusal = results::get_string(json, "refusal", plugin.string());
+        for (const Json::Value& method : results::get_array(json, "methods", plugin.string())) {
             result.methods.push_back(read_method(method, plugin.string()));
         }
     } catch (const std::exception& error) {

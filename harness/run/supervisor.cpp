@@ -20,7 +20,6 @@
 #include "base/child_process.h"
 #include "base/console.h"
 #include "base/process_tree.h"
-#include "run/cell_record.h"
 #include "run/last_words.h"
 #include "run/shared_signs.h"
 
@@ -125,8 +124,8 @@ std::string place(const VitalSigns& signs, const std::string& plugin) {
     }
 }
 
-CellResult ended(CellStatus status, std::string reason, std::uint64_t peak) {
-    CellResult result;
+results::CellResult ended(results::CellStatus status, std::string reason, std::uint64_t peak) {
+    results::CellResult result;
     result.status = status;
     result.reason = std::move(reason);
     if (peak > 0) result.peak_rss_bytes = peak;
@@ -134,14 +133,14 @@ CellResult ended(CellStatus status, std::string reason, std::uint64_t peak) {
 }
 
 /// What a child that ended by itself leaves: its result, or how it came to an end without one.
-CellResult result_of(const base::ChildEnding& ending, const std::string& text,
-                     const VitalSigns& signs, const std::string& plugin, const Log& log) {
+results::CellResult result_of(const base::ChildEnding& ending, const std::string& text,
+                              const VitalSigns& signs, const std::string& plugin, const Log& log) {
     if (signs.finished.load() == 1 && !text.empty()) {
-        CellResult result;
+        results::CellResult result;
         try {
-            result = read_result(text, "result of plugin " + plugin);
+            result = results::read_result(text, "result of plugin " + plugin);
         } catch (const InputError& error) {
-            return ended(CellStatus::failed, error.what(), 0);
+            return ended(results::CellStatus::failed, error.what(), 0);
         }
         if (!ending.well()) {
             result.warnings.push_back(
@@ -151,7 +150,7 @@ CellResult result_of(const base::ChildEnding& ending, const std::string& text,
     }
     // A process that ends well without a result was ended by the plugin, not by us.
     return ended(
-        CellStatus::crashed,
+        results::CellStatus::crashed,
         fmt::format("{} {}{}{}", ending.words(), place(signs, plugin),
                     ending.by_signal ? "" : " before its result was written", log.last_words()),
         0);
@@ -181,9 +180,9 @@ int become_cell(const std::filesystem::path& program, int spec, int signs, int r
 
 }  // namespace
 
-CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
-                    const std::filesystem::path& program, const std::filesystem::path& log_path,
-                    const CellProgress& progress) {
+results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
+                             const std::filesystem::path& program,
+                             const std::filesystem::path& log_path, const CellProgress& progress) {
     const base::FileDescriptor spec_file = base::memory_file("lodbench-spec");
     const base::FileDescriptor signs_file = base::memory_file("lodbench-signs");
     const base::FileDescriptor result_file = base::memory_file("lodbench-result");
@@ -224,7 +223,7 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
         const auto seconds = [now](auto since) {
             return std::chrono::duration<double>(now - since).count();
         };
-        const auto kill_for = [&](CellStatus status, const std::string& what) {
+        const auto kill_for = [&](results::CellStatus status, const std::string& what) {
             // Where it stood, read before it is gone for good.
             const std::string reason = fmt::format("{} {}", what, place(*signs, plugin));
             child.end();
@@ -238,19 +237,20 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
             continue;
         }
         if (resident > limits.memory_bytes) {
-            return kill_for(CellStatus::failed, fmt::format("exceeded the memory limit of {} MiB",
-                                                            limits.memory_bytes >> 20));
+            return kill_for(
+                results::CellStatus::failed,
+                fmt::format("exceeded the memory limit of {} MiB", limits.memory_bytes >> 20));
         }
         if (const std::uint64_t beat = signs->beats.load(); beat != beats) {
             beats = beat;
             last_beat = now;
         }
         if (belongs_to_a_frame(signs->call.load()) && seconds(last_beat) > limits.frame_s) {
-            return kill_for(CellStatus::timeout,
+            return kill_for(results::CellStatus::timeout,
                             fmt::format("no sign of life for {} s", limits.frame_s));
         }
         if (seconds(start) > limits.cell_s) {
-            return kill_for(CellStatus::timeout,
+            return kill_for(results::CellStatus::timeout,
                             fmt::format("exceeded the cell's time limit of {} s", limits.cell_s));
         }
         if (progress) {
@@ -259,7 +259,8 @@ CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     }
     log.drain(reading.number());
 
-    CellResult result = result_of(child.ending(), base::read_all(result_file), *signs, plugin, log);
+    results::CellResult result =
+        result_of(child.ending(), base::read_all(result_file), *signs, plugin, log);
     if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
     if (std::string words = child.left_behind(); !words.empty()) {
         result.warnings.push_back(std::move(words));
@@ -295,13 +296,13 @@ int serve_cell(int spec_descriptor, int signs_descriptor, int result_descriptor)
         spec = read_spec(base::read_all(file), "specification of a cell");
     }
     const FileIdentity expected = identity_of(result_descriptor);
-    const CellResult result = fly_cell(spec, *signs);
+    const results::CellResult result = fly_cell(spec, *signs);
     signs->enter(Call::write_results);
     if (identity_of(result_descriptor) != expected) {
         base::tell("the descriptor of the result was closed or names another file");
         return 1;
     }
-    if (!base::write_all(result_descriptor, write_result(result))) return 1;
+    if (!base::write_all(result_descriptor, results::write_result(result))) return 1;
     signs->finished.store(1);
     return 0;
 }

@@ -22,9 +22,10 @@ using CellProgress = std::function<void(int frames_done, int frames_total)>;
 /// Runs `program cell` for the specification and waits. What the child prints goes to `log`, cut
 /// after 1 MiB. Whatever the child does, a result comes back; EnvironmentError only when none could
 /// be started.
-[[nodiscard]] CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
-                                  const std::filesystem::path& program,
-                                  const std::filesystem::path& log, const CellProgress& progress);
+[[nodiscard]] results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
+                                           const std::filesystem::path& program,
+                                           const std::filesystem::path& log,
+                                           const CellProgress& progress);
 
 /// The child's side: reads the specification from descriptor `spec`, flies it, writes the result to
 /// descriptor `result`; `signs` holds the shared VitalSigns. Exit status.

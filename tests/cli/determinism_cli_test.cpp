@@ -53,7 +53,7 @@ TEST(Determinism, two_runs_give_the_same_truth_to_the_bit_on_all_processors_and_
             EXPECT_EQ(a["depth_hash"], b["depth_hash"]);
             EXPECT_EQ(a["truth_frames"].asInt(), 3);
             for (const char* field : kLockstepFields) {
-                EXPECT_EQ(report::to_text(a[field]), report::to_text(b[field])) << field;
+                EXPECT_EQ(results::to_text(a[field]), results::to_text(b[field])) << field;
             }
             const std::string csv = a["cell"].asString() + ".csv";
             const auto rows = read_frames_csv(first / "frames" / csv);

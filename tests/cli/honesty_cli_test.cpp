@@ -7,7 +7,7 @@
 #include <map>
 #include <tuple>
 
-#include "report/json.h"
+#include "results/json.h"
 #include "run_lodbench.h"
 
 namespace lodbench::test {
@@ -63,9 +63,9 @@ TEST(BoundHonesty, only_accumulated_errors_in_the_image_plane_keep_the_bound) {
     int cells = 0;
     for (const Json::Value& cell : cells_of(out)) {
         const Json::Value& params = cell["params"];
-        const double honesty = report::read_number_or_inf(cell["bound_honesty"]).value();
+        const double honesty = results::read_number_or_inf(cell["bound_honesty"]).value();
         EXPECT_NEAR(honesty,
-                    report::read_number_or_inf(cell["screen_error_px"]["max"]).value() /
+                    results::read_number_or_inf(cell["screen_error_px"]["max"]).value() /
                         cell["claimed_px"].asDouble(),
                     1e-9);
         EXPECT_EQ(cell["crack_pixels"]["total"].asUInt64(), 0U) << cell["cell"].asString();
@@ -112,7 +112,7 @@ TEST(BoundHonesty, patches_keep_the_bound_as_vertices_do_and_have_no_cracks) {
     int cells = 0;
     for (const Json::Value& cell : cells_of(out)) {
         const std::string name = cell["cell"].asString();
-        EXPECT_LE(report::read_number_or_inf(cell["bound_honesty"]).value(), 1 + 1e-3) << name;
+        EXPECT_LE(results::read_number_or_inf(cell["bound_honesty"]).value(), 1 + 1e-3) << name;
         EXPECT_GT(cell["screen_error_px"]["max"].asDouble(), 0) << name;
         EXPECT_EQ(cell["crack_pixels"]["total"].asUInt64(), 0U) << name;
         EXPECT_EQ(cell["uncovered_samples"].asUInt64(), 0U) << name;

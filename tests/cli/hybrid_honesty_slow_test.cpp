@@ -104,7 +104,7 @@ TEST(HybridHonesty, holds_in_every_frame_of_slow_fast_and_jumping_flight) {
     std::map<std::string, double> reused;  // share, by scenario
     for (const Json::Value& cell : cells_of(out)) {
         const std::string scenario = cell["scenario"].asString();
-        const double honesty = report::read_number_or_inf(cell["bound_honesty"]).value();
+        const double honesty = results::read_number_or_inf(cell["bound_honesty"]).value();
         EXPECT_LE(honesty, 1 + 1e-3) << scenario;
         // Not because there was nothing to measure.
         EXPECT_GT(honesty, 0.1) << scenario;

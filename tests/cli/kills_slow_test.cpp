@@ -32,7 +32,7 @@ protected:
             std::string text;
             for (const char* field : {"status", "triangles", "draw_calls", "uploaded_bytes",
                                       "samples_served", "screen_error_px", "pixel_error_px"}) {
-                text += report::to_text(cell[field]) + "\n";
+                text += results::to_text(cell[field]) + "\n";
             }
             EXPECT_TRUE(cells.emplace(cell["cell"].asString(), text).second);
         }

@@ -69,7 +69,7 @@ TEST_F(Output, names_from_outside_neither_steer_the_terminal_nor_break_json) {
     EXPECT_THAT(finished.output, Not(HasSubstr("\x1b")));
     Json::Value value;
     value["name"] = name;
-    EXPECT_THAT(report::to_text(value), HasSubstr("[2J\xEF\xBF\xBD.toml"));
+    EXPECT_THAT(results::to_text(value), HasSubstr("[2J\xEF\xBF\xBD.toml"));
 }
 
 TEST_F(Output, a_pipe_that_nobody_reads_is_an_error_and_no_signal) {

@@ -126,7 +126,7 @@ TEST_F(RealtimeTruth, changes_nothing_in_lockstep_where_two_runs_are_equal) {
     const fs::path first = run("first", kLags), second = run("second", kLags);
     const Json::Value a = cells_of(first).at(0), b = cells_of(second).at(0);
     for (const char* field : kLockstepFields) {
-        EXPECT_EQ(report::to_text(a[field]), report::to_text(b[field])) << field;
+        EXPECT_EQ(results::to_text(a[field]), results::to_text(b[field])) << field;
     }
     EXPECT_EQ(a["depth_hash"], b["depth_hash"]);
     const std::vector<FrameTexts> one = frames_of(first, a), other = frames_of(second, b);

@@ -6,8 +6,8 @@
 
 #include <set>
 
+#include "base/files.h"
 #include "cli/run_lodbench.h"
-#include "report/results.h"
 #include "unit/raster_files.h"
 
 namespace lodbench::test {
@@ -133,8 +133,8 @@ TEST_F(BadTerrain, terrain_that_changes_before_a_resume_is_refused_with_both_che
     ASSERT_EQ(cells.size(), 4U);
     // As if killed before the last cell.
     const fs::path file = out() / "cells.jsonl";
-    const std::string text = report::read_text(file);
-    report::write_whole(file, text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+    const std::string text = base::read_text(file);
+    base::write_whole(file, text.substr(0, text.rfind('\n', text.size() - 2) + 1));
     write_heights(8);
     const Finished resumed =
         run_lodbench({"run", "--resume", "--out", out().string()}, folder_.path());
@@ -163,14 +163,14 @@ TEST(List, json_names_each_method_and_describe_each_parameter) {
     const ScratchFolder folder;
     const Finished listed = run_lodbench({"list", "--json"}, folder.path());
     ASSERT_EQ(listed.status, 0) << listed.output;
-    const Json::Value json = report::parse_json(listed.output, "list");
+    const Json::Value json = results::parse_json(listed.output, "list");
     std::set<std::string> ids;
     for (const Json::Value& method : json["methods"]) ids.insert(method["id"].asString());
     EXPECT_THAT(ids, testing::IsSupersetOf({"full-grid", "lindstrom", "pgm", "template"}));
     for (const std::string& id : ids) {
         const Finished described = run_lodbench({"describe", id, "--json"}, folder.path());
         ASSERT_EQ(described.status, 0) << described.output;
-        const Json::Value method = report::parse_json(described.output, "describe");
+        const Json::Value method = results::parse_json(described.output, "describe");
         EXPECT_EQ(method["id"].asString(), id);
         EXPECT_TRUE(method["params"].isArray());
         for (const Json::Value& param : method["params"]) {
@@ -185,7 +185,7 @@ TEST(List, devices_are_numbered_from_zero_and_say_whether_they_are_software) {
     const ScratchFolder folder;
     const Finished listed = run_lodbench({"list", "--devices", "--json"}, folder.path());
     ASSERT_EQ(listed.status, 0) << listed.output;
-    const Json::Value json = report::parse_json(listed.output, "list");
+    const Json::Value json = results::parse_json(listed.output, "list");
     ASSERT_GE(json.size(), 1U);
     for (Json::ArrayIndex i = 0; i < json.size(); ++i) {
         EXPECT_EQ(json[i]["number"].asUInt(), i);

@@ -22,13 +22,13 @@ protected:
         ASSERT_EQ(finished.status, 0) << finished.output;
         const std::string lines = text_of(out() / "cells.jsonl");
         fs::resize_file(out() / "cells.jsonl", lines.find('\n') + 1);  // as if killed
-        run_ = report::parse_json(text_of(out() / "run.json"), "run.json");
+        run_ = results::parse_json(text_of(out() / "run.json"), "run.json");
         left_ = run_["cells"][0]["id"] == cells_of(out())[0]["cell"] ? 1 : 0;
     }
     [[nodiscard]] fs::path out() const { return scratch_.path() / "out"; }
     /// Writes `run` as run.json, and resumes.
     [[nodiscard]] Finished resume(const Json::Value& run) const {
-        std::ofstream(out() / "run.json") << report::to_text(run, true);
+        std::ofstream(out() / "run.json") << results::to_text(run, true);
         return run_lodbench({"run", "--resume", "--out", out().string()}, scratch_.path());
     }
 
@@ -70,14 +70,14 @@ TEST_F(ResumeTrust, another_build_or_driver_is_refused_with_both_values) {
         const Finished finished = resume(run);
         EXPECT_EQ(finished.status, 2) << field;
         EXPECT_THAT(finished.output, HasSubstr(std::string("'") + field + "' is \"another\""));
-        EXPECT_THAT(finished.output, HasSubstr(report::to_text(run_[field])));
+        EXPECT_THAT(finished.output, HasSubstr(results::to_text(run_[field])));
     }
     for (const char* field : {"vendor", "renderer", "version"}) {
         Json::Value run = run_;
         run["gl"][field] = "another";
         const Finished finished = resume(run);
         EXPECT_EQ(finished.status, 2) << field;
-        EXPECT_THAT(finished.output, HasSubstr(report::to_text(run_["gl"][field])));
+        EXPECT_THAT(finished.output, HasSubstr(results::to_text(run_["gl"][field])));
         EXPECT_EQ(cells_of(out()).size(), 1U) << "what was finished is kept, and no more";
     }
     EXPECT_EQ(resume(run_).status, 0);

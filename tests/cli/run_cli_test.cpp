@@ -66,7 +66,7 @@ protected:
         return rows;
     }
     static Json::Value run_json(const fs::path& out) {
-        return report::parse_json(text_of(out / "run.json"), "run.json");
+        return results::parse_json(text_of(out / "run.json"), "run.json");
     }
 
     ScratchFolder folder_;
@@ -102,7 +102,7 @@ TEST_F(Run, table_goes_to_standard_output_and_progress_to_standard_error) {
 TEST_F(Run, json_is_one_object_with_the_cells_as_they_are_in_the_file) {
     const Spoken spoken = run(scenario(), kThree + Arguments{"--json"}, out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
-    const Json::Value json = report::parse_json(spoken.out, "standard output");
+    const Json::Value json = results::parse_json(spoken.out, "standard output");
     EXPECT_EQ(json["out"].asString(), out().string());
     EXPECT_EQ(json["exit_status"].asInt(), 0);
     EXPECT_TRUE(json["error"].isNull());
@@ -380,12 +380,12 @@ TEST_F(Run, a_flight_that_sees_no_terrain_is_told_once_and_stands_in_the_results
         "warning: the flight of 'deep': no terrain is in view in all 3 frames";
     EXPECT_EQ(times(spoken.err, blind), 1) << spoken.err;
     EXPECT_EQ(times(spoken.err, "the camera stands still"), 1) << spoken.err;
-    const Json::Value run_json = report::parse_json(text_of(out() / "run.json"), "run.json");
-    EXPECT_EQ(times(report::to_text(run_json["warnings"]), "no terrain is in view"), 1);
+    const Json::Value run_json = results::parse_json(text_of(out() / "run.json"), "run.json");
+    EXPECT_EQ(times(results::to_text(run_json["warnings"]), "no terrain is in view"), 1);
     const std::vector<Json::Value> cells = cells_of(out());
     ASSERT_EQ(cells.size(), 2U);
     for (const Json::Value& cell : cells) {
-        EXPECT_EQ(times(report::to_text(cell["warnings"]), "no terrain is in view"), 1);
+        EXPECT_EQ(times(results::to_text(cell["warnings"]), "no terrain is in view"), 1);
     }
     EXPECT_EQ(times(text_of(out() / "summary.md"), "no terrain is in view"), 1);
     // As tools that read line by line look for it.

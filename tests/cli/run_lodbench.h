@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "report/json.h"
+#include "results/json.h"
 
 namespace lodbench::test {
 
@@ -108,7 +108,7 @@ inline std::vector<Json::Value> cells_of(const fs::path& out) {
     std::vector<Json::Value> cells;
     std::ifstream stream(out / "cells.jsonl");
     for (std::string line; std::getline(stream, line);) {
-        cells.push_back(report::parse_sealed(line, "cells.jsonl"));
+        cells.push_back(results::parse_sealed(line, "cells.jsonl"));
     }
     return cells;
 }

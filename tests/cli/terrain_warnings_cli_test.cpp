@@ -44,8 +44,8 @@ protected:
         return run_lodbench(arguments, folder_.path());
     }
     [[nodiscard]] Json::Value warnings_of_run() const {
-        return report::parse_json(text_of(folder_.path() / "out" / "run.json"),
-                                  "run.json")["warnings"];
+        return results::parse_json(text_of(folder_.path() / "out" / "run.json"),
+                                   "run.json")["warnings"];
     }
     static std::size_t count(const std::string& text, const std::string& part) {
         std::size_t found = 0;
@@ -70,7 +70,7 @@ TEST_F(TerrainWarnings, stand_on_the_terminal_and_in_json) {
     }
     const Finished finished = terrain({"info", file("a.raw"), "--json"});
     const std::string text = finished.output.substr(finished.output.find('{'));
-    const Json::Value json = report::parse_json(text, "standard output");
+    const Json::Value json = results::parse_json(text, "standard output");
     ASSERT_EQ(json["warnings"].size(), 1U);
     EXPECT_THAT(json["warnings"][0].asString(), HasSubstr(warning));
     EXPECT_TRUE(json["reference"].isNull());

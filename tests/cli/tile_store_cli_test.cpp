@@ -33,7 +33,7 @@ protected:
         EXPECT_EQ(finished.status, 0) << finished.output;
         // A warning may stand before the object, on standard error.
         const std::string& text = finished.output;
-        return report::parse_json(text.substr(std::min(text.find('{'), text.size())), "output");
+        return results::parse_json(text.substr(std::min(text.find('{'), text.size())), "output");
     }
     [[nodiscard]] std::size_t file_count() const {
         return std::size_t(std::distance(fs::directory_iterator(files_), {}));

@@ -37,7 +37,7 @@ protected:
     }
     Json::Value json(const Finished& finished) {
         EXPECT_EQ(finished.status, 0) << errors();
-        return report::parse_json(finished.output, "standard output");
+        return results::parse_json(finished.output, "standard output");
     }
 
     ScratchFolder folder_;
@@ -127,7 +127,7 @@ TEST_F(Trade, match_finds_the_knob_and_flies_it_whatever_the_seed) {
             EXPECT_EQ(row["knob"].asDouble(), found.back());
             EXPECT_NEAR(row["pixel_error_px"].asDouble(), 2.0, 0.1);
         }
-        EXPECT_EQ(report::parse_sealed(text_of(fs::path(out(seed)) / "match.json"), "match.json"),
+        EXPECT_EQ(results::parse_sealed(text_of(fs::path(out(seed)) / "match.json"), "match.json"),
                   matched["match"]);
         EXPECT_THAT(text_of(fs::path(out(seed)) / "match.md"), HasSubstr("| lindstrom "));
     }

@@ -160,7 +160,7 @@ TEST_P(Truth, screen_error_is_what_an_independent_program_finds_on_the_exported_
             ASSERT_EQ(made.status, 0) << made.output;
             const Outcome checked = check_truth(file("m.ply"), file("window.raw"));
             ASSERT_EQ(checked.status, 0) << checked.output;
-            const Json::Value truth = report::parse_json(checked.output, "check_truth.py");
+            const Json::Value truth = results::parse_json(checked.output, "check_truth.py");
             ASSERT_GT(figure(truth, "count"), 1000) << "too little is in view to judge by";
             ASSERT_GT(figure(truth, "rms"), 0.01) << "too good to judge by";
             for (const auto& [column, name] : {std::pair{"screen_max_px", "max"},
@@ -228,7 +228,7 @@ protected:
     Json::Value figures() {
         const Outcome checked = check_truth(file("m.ply"), file("plane.raw"));
         EXPECT_EQ(checked.status, 0) << checked.output;
-        return checked.status == 0 ? report::parse_json(checked.output, "check_truth.py")
+        return checked.status == 0 ? results::parse_json(checked.output, "check_truth.py")
                                    : Json::Value();
     }
     /// Distances in plan from the camera's axis of the samples that are in view at a depth.

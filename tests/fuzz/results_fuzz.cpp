@@ -62,7 +62,7 @@ void expect_plain_text(const std::string& text, const char* what) {
     }
 }
 
-void show(const report::ResultFolder& results) {
+void show(const results::ResultFolder& results) {
     const auto rows = report::table_rows(results.cells, 1);
     (void)report::text_table(rows);  // made plain where it is printed
     (void)report::markdown_table(rows);
@@ -73,7 +73,7 @@ void show(const report::ResultFolder& results) {
 void use_as_results(std::string_view input) {
     write_files(input);
     try {
-        show(report::read_result_folder(folder()));
+        show(results::read_result_folder(folder()));
     } catch (const InputError& error) {
         const std::string_view message = error.what();
         if (!message.starts_with(folder().string())) {

@@ -78,7 +78,7 @@ inline void expect_no_error(const std::shared_ptr<const terrain::HeightField>& t
         SCOPED_TRACE(testing::Message() << name << ", " << size.width << " x " << size.height);
         camera.viewport = size;
         flight.select(camera);
-        run::FrameRecord record;
+        results::FrameRecord record;
         record.triangles = flight.stage().count_primitives();
         measurer.take(frame++, record, nullptr);
         measurer.measure(record);
@@ -97,7 +97,7 @@ inline void expect_no_error(const std::shared_ptr<const terrain::HeightField>& t
             EXPECT_EQ(*truth.ssim, 1.0);
         }
     }
-    run::CellResult result;
+    results::CellResult result;
     measurer.finish(result);
     EXPECT_EQ(result.truth["unjudged_pixels"].asUInt64(), 0U);
     EXPECT_GT(result.truth["screen_error_px"]["count"].asUInt64(), terrain->samples().size());

@@ -305,7 +305,7 @@ TEST(MultiContext, skirts_hide_the_edge_of_a_cell_that_is_longer_than_a_block) {
         flight.stage().select(camera, {});
         flight.stage().settle();
         run::FrameMeasurer measurer(flight.stage(), std::nullopt, terrain);
-        run::FrameRecord record;
+        results::FrameRecord record;
         record.triangles = flight.stage().count_primitives();
         measurer.take(0, record, nullptr);
         measurer.measure(record);

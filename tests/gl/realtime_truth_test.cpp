@@ -23,7 +23,7 @@ protected:
         stage.resume_background();
     }
     Json::Value truth() {
-        run::CellResult result;
+        results::CellResult result;
         measurer_.finish(result);
         return result.truth;
     }

@@ -56,14 +56,14 @@ INSTANTIATE_TEST_SUITE_P(all, TileMethods, testing::ValuesIn(kMethods), [](const
 });
 
 /// Error and crack pixels of one frame.
-run::FrameRecord measured(Flight& flight, const Camera& camera,
-                          const std::shared_ptr<const terrain::HeightField>& terrain) {
+results::FrameRecord measured(Flight& flight, const Camera& camera,
+                              const std::shared_ptr<const terrain::HeightField>& terrain) {
     run::Stage& stage = flight.stage();
     stage.resize(camera.viewport);
     stage.select(camera, {});
     stage.settle();
     run::FrameMeasurer measurer(stage, 4.0, terrain);
-    run::FrameRecord record;
+    results::FrameRecord record;
     record.triangles = stage.count_primitives();
     measurer.take(0, record, nullptr);
     measurer.measure(record);
@@ -79,7 +79,7 @@ TEST_P(TileMethods, snapping_leaves_no_crack_pixel_skirts_hide_them_and_none_lea
         Settings settings = {{"tau", "6"}, {"cracks", kinds[kind]}};
         Flight flight(terrain, "tile_quadtree", method, settings);
         for (const double heading : {50.0, 220.0}) {
-            const run::FrameRecord record =
+            const results::FrameRecord record =
                 measured(flight, low_camera(terrain->info(), heading), terrain);
             cracks[kind] += record.truth.crack_pixels.value();
             skirts[kind] += record.truth.skirt_pixels.value();

@@ -10,11 +10,10 @@
 #include <fstream>
 #include <set>
 
+#include "base/files.h"
 #include "base/isolated.h"
-#include "report/json.h"
-#include "report/results.h"
 #include "report/table.h"
-#include "run/cell_record.h"
+#include "results/json.h"
 #include "run/plan.h"
 
 namespace lodbench::run {
@@ -54,11 +53,11 @@ TEST(Interleave, is_a_permutation_that_the_seed_decides_and_repetitions_stay_in_
               (std::vector<std::string>{"0r0", "1r0", "2r0"}));
 }
 
-CellResult sample_result() {
-    CellResult result;
-    result.status = CellStatus::ok;
+results::CellResult sample_result() {
+    results::CellResult result;
+    result.status = results::CellStatus::ok;
     for (int i = 0; i < 4; ++i) {
-        FrameRecord frame;
+        results::FrameRecord frame;
         frame.frame = i;
         frame.wall_ms = 10.0 + i;
         frame.triangles = std::uint64_t(100 + i);
@@ -70,8 +69,8 @@ CellResult sample_result() {
 }
 
 TEST(CellRecord, survives_the_way_from_child_to_parent) {
-    const std::string text = write_result(sample_result());
-    EXPECT_EQ(write_result(read_result(text, "here")), text);
+    const std::string text = results::write_result(sample_result());
+    EXPECT_EQ(results::write_result(results::read_result(text, "here")), text);
     CellSpec spec;
     spec.id = "x";
     spec.settings = {{"tau", "1"}};
@@ -84,22 +83,22 @@ TEST(CellRecord, survives_the_way_from_child_to_parent) {
 TEST(CellRecord, damaged_text_is_an_input_error) {
     for (const char* text :
          {"", "[]", "{}", "{\"status\":\"great\"}", "{\"status\":5,\"reason\":[]}", "null"}) {
-        EXPECT_THROW((void)read_result(text, "here"), InputError) << text;
+        EXPECT_THROW((void)results::read_result(text, "here"), InputError) << text;
         EXPECT_THROW((void)read_spec(text, "here"), InputError) << text;
     }
 }
 
 TEST(CellRecord, what_was_not_measured_is_null_never_zero) {
-    CellResult crashed;
-    crashed.status = CellStatus::crashed;
+    results::CellResult crashed;
+    crashed.status = results::CellStatus::crashed;
     crashed.reason = "aborted";
-    const Json::Value json = cell_record({}, "demo", {}, crashed, 16.67);
+    const Json::Value json = results::cell_record({}, crashed, 16.67);
     for (const char* key :
          {"fps", "frame_ms", "gpu_ms", "triangles", "prepare_s", "gpu_bytes", "frames",
           "screen_error_px", "pixel_error_px", "popping_px", "image", "bound_honesty"}) {
         EXPECT_TRUE(json.isMember(key) && json[key].isNull()) << key;
     }
-    const Json::Value good = cell_record({}, "demo", {}, sample_result(), 16.67);
+    const Json::Value good = results::cell_record({}, sample_result(), 16.67);
     EXPECT_DOUBLE_EQ(good["fps"].asDouble(), 1000 / 11.5);
     EXPECT_DOUBLE_EQ(good["frame_ms"]["max"].asDouble(), 13);
     EXPECT_TRUE(good["frame_ms"]["p99"].isNull()) << "4 frames carry no 99th percentile";
@@ -112,27 +111,27 @@ TEST(Results, files_are_written_whole_or_not_at_all) {
     std::string folder = "/tmp/lodbench-results-XXXXXX";
     ASSERT_NE(mkdtemp(folder.data()), nullptr);
     const std::filesystem::path base(folder);
-    report::write_whole(base / "a", "one");
-    report::write_whole(base / "a", "two");
-    EXPECT_EQ(report::read_text(base / "a"), "two");
-    EXPECT_THROW(report::write_whole(base / "none" / "a", "x"), EnvironmentError);
+    base::write_whole(base / "a", "one");
+    base::write_whole(base / "a", "two");
+    EXPECT_EQ(base::read_text(base / "a"), "two");
+    EXPECT_THROW(base::write_whole(base / "none" / "a", "x"), EnvironmentError);
     const base::Answer full = base::run_isolated(20, [&] {
         const rlimit bytes{4096, 4096};
         setrlimit(RLIMIT_FSIZE, &bytes);
         signal(SIGXFSZ, SIG_IGN);
         try {
-            report::write_whole(base / "a", std::string(5000, 'x'));
-        } catch (const report::DiskFullError& error) {
+            base::write_whole(base / "a", std::string(5000, 'x'));
+        } catch (const base::DiskFullError& error) {
             return std::string(error.what());
         }
         return std::string("it fits");
     });
     EXPECT_THAT(full.text, testing::HasSubstr("File too large; make room there"));
-    EXPECT_THROW(report::append_line("/dev/full", "x"), EnvironmentError);
-    report::append_line(base / "lines", "{}");
+    EXPECT_THROW(base::append_line("/dev/full", "x"), EnvironmentError);
+    base::append_line(base / "lines", "{}");
     std::ofstream(base / "lines", std::ios::app) << "{\"half\":";
-    EXPECT_EQ(report::read_lines(base / "lines", true), std::vector<std::string>{"{}"});
-    EXPECT_EQ(report::read_text(base / "lines"), "{}\n");
+    EXPECT_EQ(base::read_lines(base / "lines", true), std::vector<std::string>{"{}"});
+    EXPECT_EQ(base::read_text(base / "lines"), "{}\n");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(base), {}), 2)
         << "no temporary file stays";
     std::filesystem::remove_all(base);
@@ -144,16 +143,13 @@ TEST(Table, labels_show_the_parameters_that_differ_and_failures_stand_below) {
         Params params;
         params.set("tau", tau);
         params.set("cull", true);
-        CellSpec spec;
-        spec.method = "m";
-        records.push_back(cell_record(spec, "demo", params, sample_result(), 16.67));
+        const results::CellName name = {"", "demo", "m", params};
+        records.push_back(results::cell_record(name, sample_result(), 16.67));
     }
-    CellResult crashed;
-    crashed.status = CellStatus::crashed;
+    results::CellResult crashed;
+    crashed.status = results::CellStatus::crashed;
     crashed.reason = "aborted";
-    CellSpec bad;
-    bad.method = "bad";
-    records.push_back(cell_record(bad, "demo", {}, crashed, 16.67));
+    records.push_back(results::cell_record({"", "demo", "bad", {}}, crashed, 16.67));
     const auto rows = report::table_rows(records, 1);
     ASSERT_EQ(rows.size(), 3U);
     EXPECT_EQ(rows[0].label, "bad");

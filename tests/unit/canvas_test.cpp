@@ -8,10 +8,10 @@
 #include <limits>
 #include <random>
 
-#include "report/canvas.h"
-#include "report/text.h"
+#include "picture/canvas.h"
+#include "picture/text.h"
 
-namespace lodbench::report {
+namespace lodbench::picture {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -116,4 +116,4 @@ TEST(Text, what_has_no_room_ends_in_an_ellipsis) {
 }
 
 }  // namespace
-}  // namespace lodbench::report
+}  // namespace lodbench::picture

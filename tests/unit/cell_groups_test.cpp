@@ -1,12 +1,12 @@
 // Repetitions of one setting, and whether they drew the same.
 
-#include "report/cell_groups.h"
+#include "results/cell_groups.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace lodbench::report {
+namespace lodbench::results {
 namespace {
 
 using testing::ElementsAre;
@@ -62,4 +62,4 @@ TEST(Disagreements, leave_out_what_failed_or_was_not_measured) {
 }
 
 }  // namespace
-}  // namespace lodbench::report
+}  // namespace lodbench::results

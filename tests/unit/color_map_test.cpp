@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "report/color_map.h"
-#include "report/truth_panels.h"
+#include "picture/color_map.h"
+#include "picture/truth_panels.h"
 
-namespace lodbench::report {
+namespace lodbench::picture {
 namespace {
 
 double distance(const Oklab& first, const Oklab& second) {
@@ -90,4 +90,4 @@ TEST(ErrorColor, marks_are_apart_from_every_error_and_from_each_other) {
 }
 
 }  // namespace
-}  // namespace lodbench::report
+}  // namespace lodbench::picture

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "cli/run_lodbench.h"
-#include "report/json.h"
-#include "report/png.h"
+#include "picture/png.h"
+#include "results/json.h"
 #include "run/flight_record.h"
 #include "scenario/flight_path.h"
 #include "terrain/height_field.h"
@@ -31,7 +31,7 @@ terrain::HeightField field(int rows, int columns, const auto& height) {
     return {info, std::move(heights)};
 }
 
-int tone(const report::Image& image, int x, int y) {
+int tone(const picture::Image& image, int x, int y) {
     return image.at(x, y).r;
 }
 
@@ -39,7 +39,7 @@ TEST(Hillshade, slopes_to_the_north_west_are_light_and_those_to_the_south_east_d
     // A ridge from the south-west to the north-east: row 0 is the north.
     const auto ridge =
         field(65, 65, [](int row, int column) { return float(100 - std::abs(row + column - 64)); });
-    const report::Image image = hillshade(ridge, 512);
+    const picture::Image image = hillshade(ridge, 512);
     EXPECT_EQ(image.width, 65);  // no more pixels than samples
     const auto flat = field(65, 65, [](int, int) { return 7.0F; });
     const int plain = tone(hillshade(flat, 512), 30, 30);
@@ -49,7 +49,7 @@ TEST(Hillshade, slopes_to_the_north_west_are_light_and_those_to_the_south_east_d
 
 TEST(Hillshade, is_no_larger_than_asked_for_and_keeps_the_terrains_shape) {
     const auto wide = field(33, 129, [](int row, int column) { return float(row * column % 17); });
-    const report::Image image = hillshade(wide, 64);
+    const picture::Image image = hillshade(wide, 64);
     EXPECT_EQ(image.width, 64);
     EXPECT_EQ(image.height, 16);
     EXPECT_EQ(image.rgb.size(), 64U * 16U * 3U);
@@ -68,7 +68,7 @@ TEST(FlightRecord, holds_the_place_and_the_view_of_each_frame_and_is_written_onc
     };
     record_flight(folder.path(), "some", terrain, 5, camera_at);
     const fs::path file = folder.path() / "flights" / "some.json";
-    const Json::Value json = report::parse_json(test::text_of(file), "some.json");
+    const Json::Value json = results::parse_json(test::text_of(file), "some.json");
     EXPECT_EQ(json["south_west"][1], 2000.0);
     EXPECT_EQ(json["north_east"][0], 1200.0);
     ASSERT_EQ(json["positions"].size(), 5U);
@@ -77,7 +77,7 @@ TEST(FlightRecord, holds_the_place_and_the_view_of_each_frame_and_is_written_onc
     EXPECT_NEAR(json["directions"][4][0].asDouble(), 1, 1e-9);  // east
     const std::string picture = test::text_of(folder.path() / "flights" / "some__hillshade.png");
     EXPECT_TRUE(
-        report::read_png({reinterpret_cast<const std::uint8_t*>(picture.data()), picture.size()}));
+        picture::read_png({reinterpret_cast<const std::uint8_t*>(picture.data()), picture.size()}));
     // One tile, which each view needs.
     ASSERT_EQ(json["needed"].size(), 7U);
     EXPECT_EQ(json["needed"][2]["target_px"], 1.0);
@@ -85,7 +85,7 @@ TEST(FlightRecord, holds_the_place_and_the_view_of_each_frame_and_is_written_onc
     EXPECT_EQ(json["needed"][2]["samples"].asUInt64(), 65U * 65);
     EXPECT_EQ(json["needed"][2]["most_tiles_in_a_frame"].asUInt64(), 1U);
     record_flight(folder.path(), "some", terrain, 3, camera_at);
-    EXPECT_EQ(report::parse_json(test::text_of(file), "some.json"), json);
+    EXPECT_EQ(results::parse_json(test::text_of(file), "some.json"), json);
 }
 
 }  // namespace

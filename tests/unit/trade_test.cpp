@@ -10,7 +10,7 @@
 
 #include "api/error.h"
 #include "base/hash.h"
-#include "report/json.h"
+#include "results/json.h"
 
 namespace lodbench::report {
 namespace {
@@ -126,13 +126,13 @@ TEST(ReferencePoint, is_a_tenth_beyond_the_worst_that_was_measured) {
 
 Json::Value cell(const std::string& method, double tau, int repetition, const std::string& error,
                  double frame_ms) {
-    return parse_json(R"({"cell":"x","scenario":"s","method":")" + method +
-                          R"(","params":{"tau":)" + std::to_string(tau) + R"(},"repetition":)" +
-                          std::to_string(repetition) + R"(,"status":"ok","pixel_error_px":)" +
-                          error + R"(,"frame_ms":{"mean":)" + std::to_string(frame_ms) +
-                          R"(},"triangles":{"mean":100},"gpu_bytes":1048576,)" +
-                          R"("prepare_s":null})",
-                      "a cell");
+    return results::parse_json(
+        R"({"cell":"x","scenario":"s","method":")" + method + R"(","params":{"tau":)" +
+            std::to_string(tau) + R"(},"repetition":)" + std::to_string(repetition) +
+            R"(,"status":"ok","pixel_error_px":)" + error + R"(,"frame_ms":{"mean":)" +
+            std::to_string(frame_ms) + R"(},"triangles":{"mean":100},"gpu_bytes":1048576,)" +
+            R"("prepare_s":null})",
+        "a cell");
 }
 
 TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario) {
@@ -148,7 +148,7 @@ TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario
     Json::Value elsewhere = cell("n", 1, 0, R"({"p999":50,"max":60})", 200);
     elsewhere["scenario"] = "t";
     cells.push_back(elsewhere);
-    const auto rows = trade_rows(cells, {{"m", "tau"}}, ErrorMetric::p999, 1);
+    const auto rows = trade_rows(cells, {{"m", "tau"}}, results::ErrorMetric::p999, 1);
     ASSERT_EQ(rows.size(), 5U);
     EXPECT_EQ(rows[0].label, "m tau=1");
     EXPECT_EQ(rows[1].label, "m tau=4");
@@ -162,11 +162,11 @@ TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario
     EXPECT_FALSE(rows[3].on_front);
     EXPECT_THAT(rows[3].failures, ElementsAre("failed (repetition 0): out of luck"));
     EXPECT_TRUE(rows[4].on_front) << "another scenario, another front";
-    const std::string text = trade_text(rows, ErrorMetric::p999, TradePoint{40, 10});
+    const std::string text = trade_text(rows, results::ErrorMetric::p999, TradePoint{40, 10});
     EXPECT_THAT(text, HasSubstr("out of luck"));
     // (12, 4) and (30, 1) of 40 x 10: 28 x 6 and 10 x 3.
     EXPECT_THAT(text, HasSubstr("| m      |      0.4950 |"));
-    const auto largest = trade_rows(cells, {}, ErrorMetric::max, 1);
+    const auto largest = trade_rows(cells, {}, results::ErrorMetric::max, 1);
     EXPECT_EQ(largest[1].error, kInfinity);
     EXPECT_FALSE(largest[1].on_front) << "uncovered ground is no error to trade";
 }
@@ -174,10 +174,10 @@ TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario
 TEST(TradeRows, an_asynchronous_method_is_judged_by_what_its_pace_showed) {
     Json::Value one = cell("m", 1, 0, R"({"p999":1})", 10);
     one["pixel_error_realtime_px"]["p999"] = 3.5;
-    EXPECT_EQ(pixel_error(one, ErrorMetric::p999), 3.5);
+    EXPECT_EQ(results::pixel_error(one, results::ErrorMetric::p999), 3.5);
     one["pixel_error_realtime_px"] = Json::Value::null;
-    EXPECT_EQ(pixel_error(one, ErrorMetric::p999), 1.0);
-    EXPECT_EQ(pixel_error(one, ErrorMetric::rms), std::nullopt);
+    EXPECT_EQ(results::pixel_error(one, results::ErrorMetric::p999), 1.0);
+    EXPECT_EQ(results::pixel_error(one, results::ErrorMetric::rms), std::nullopt);
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "report/truth_panels.h"
+#include "picture/truth_panels.h"
 #include "truth_pictures.h"
 
-namespace lodbench::report {
+namespace lodbench::picture {
 namespace {
 
 Image error_panel_of(const TruthPicture& picture) {
@@ -231,4 +231,4 @@ TEST(TruthFootprint, is_clipped_to_the_terrain_and_empty_where_the_view_misses_i
 }
 
 }  // namespace
-}  // namespace lodbench::report
+}  // namespace lodbench::picture

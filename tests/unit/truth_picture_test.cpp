@@ -8,10 +8,10 @@
 #include <random>
 
 #include "api/error.h"
-#include "report/truth_panels.h"
+#include "picture/truth_panels.h"
 #include "truth_pictures.h"
 
-namespace lodbench::report {
+namespace lodbench::picture {
 namespace {
 
 TEST(TruthPicture, holds_its_panels_unchanged_and_names_every_color) {
@@ -149,4 +149,4 @@ TEST(NiceScale, is_the_next_of_one_two_five) {
 }
 
 }  // namespace
-}  // namespace lodbench::report
+}  // namespace lodbench::picture

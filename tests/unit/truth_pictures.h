@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <limits>
 
-#include "report/canvas.h"
-#include "report/truth_picture.h"
+#include "picture/canvas.h"
+#include "picture/truth_picture.h"
 
-namespace lodbench::report {
+namespace lodbench::picture {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -44,4 +44,4 @@ inline int count(const Image& image, Rgb color) {
     return result;
 }
 
-}  // namespace lodbench::report
+}  // namespace lodbench::picture

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "report/truth_picture.h"
+#include "picture/truth_picture.h"
 
 namespace lodbench::report::html {
 
@@ -41,7 +41,7 @@ double Axis::place(double value) const {
 std::vector<double> Axis::ticks() const {
     std::vector<double> ticks;
     if (scale_ != Scale::logarithmic) {
-        const double nice = nice_scale((high_ - low_) / 6);
+        const double nice = picture::nice_scale((high_ - low_) / 6);
         const double step = scale_ == Scale::counting ? std::max(1.0, nice) : nice;
         for (double k = std::ceil(low_ / step); k * step <= high_ && ticks.size() < 20; ++k) {
             ticks.push_back(k * step);

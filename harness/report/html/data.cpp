@@ -10,14 +10,14 @@
 
 namespace lodbench::report::html {
 
-ReportData arrange(const std::vector<ResultFolder>& folders) {
+ReportData arrange(const std::vector<results::ResultFolder>& folders) {
     ReportData data;
     data.folders = &folders;
-    for (const ResultFolder& folder : folders) {
+    for (const results::ResultFolder& folder : folders) {
         if (folder.match) {
             for (const auto& method : folder.match->methods) data.colors.emplace(method.method, 0);
         }
-        for (CellGroup& group : group_cells(folder.cells)) {
+        for (results::CellGroup& group : results::group_cells(folder.cells)) {
             data.colors.emplace(group.method, 0);
             const bool begins = data.sets.empty() || data.sets.back().folder != &folder ||
                                 data.sets.back().scenario != group.scenario;
@@ -43,29 +43,31 @@ ReportData arrange(const std::vector<ResultFolder>& folders) {
     return data;
 }
 
-std::optional<double> figure(const CellGroup& group, const char* key, const char* inner) {
-    return measure::median(numbers_of(group.good, key, inner));
+std::optional<double> figure(const results::CellGroup& group, const char* key, const char* inner) {
+    return measure::median(results::numbers_of(group.good, key, inner));
 }
 
 bool any_has(const ResultSet& set, const char* key, const char* inner) {
-    return std::ranges::any_of(
-        set.groups, [&](const CellGroup& group) { return figure(group, key, inner).has_value(); });
+    return std::ranges::any_of(set.groups, [&](const results::CellGroup& group) {
+        return figure(group, key, inner).has_value();
+    });
 }
 
-std::optional<measure::RunInterval> interval(const CellGroup& group, std::uint64_t seed,
+std::optional<measure::RunInterval> interval(const results::CellGroup& group, std::uint64_t seed,
                                              const char* key, const char* inner) {
-    const std::vector<double> values = numbers_of(group.good, key, inner);
+    const std::vector<double> values = results::numbers_of(group.good, key, inner);
     if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
         return std::nullopt;
     }
     return measure::run_interval(values, seed);
 }
 
-std::vector<double> frame_column(const ResultSet& set, const CellGroup& group, const char* column) {
+std::vector<double> frame_column(const ResultSet& set, const results::CellGroup& group,
+                                 const char* column) {
     std::vector<const std::vector<double>*> runs;
     std::size_t frames = 0;
     for (const Json::Value* cell : group.good) {
-        const FrameTable& table = set.folder->frames.at((*cell)["cell"].asString());
+        const results::FrameTable& table = set.folder->frames.at((*cell)["cell"].asString());
         if (const std::vector<double>* values = table.find(column)) {
             runs.push_back(values);
             frames = std::max(frames, values->size());
@@ -108,7 +110,7 @@ std::size_t variant_of(const ResultSet& set, std::size_t group) {
 
 std::string left_out_note(const ResultSet& set, std::size_t drawn) {
     const auto good = std::size_t(std::ranges::count_if(
-        set.groups, [](const CellGroup& group) { return !group.good.empty(); }));
+        set.groups, [](const results::CellGroup& group) { return !group.good.empty(); }));
     if (good <= drawn) return {};
     return fmt::format(
         "Drawn are {} of {} settings, of each method the first; the tables and the CSV "

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "measure/statistics.h"
-#include "report/cell_groups.h"
-#include "report/result_folder.h"
+#include "results/cell_groups.h"
+#include "results/folder.h"
 
 namespace lodbench::report::html {
 
@@ -24,42 +24,42 @@ inline constexpr std::size_t kPictureBytes = 3'000'000;  ///< of all pictures to
 
 /// One scenario of one folder: the comparison that its numbers allow.
 struct ResultSet {
-    const ResultFolder* folder = nullptr;
+    const results::ResultFolder* folder = nullptr;
     std::string scenario;
     std::string title;  ///< with the folder's name where there are several
     std::string id;     ///< of the page's elements
-    std::vector<CellGroup> groups;
-    const FlightRecord* flight = nullptr;
+    std::vector<results::CellGroup> groups;
+    const results::FlightRecord* flight = nullptr;
     std::uint64_t seed = 1;  ///< of the bootstrap
     bool plotted = true;
 };
 
 struct ReportData {
-    const std::vector<ResultFolder>* folders = nullptr;
+    const std::vector<results::ResultFolder>* folders = nullptr;
     std::vector<ResultSet> sets;
     std::map<std::string, std::size_t> colors;  ///< of each method, the same on the whole page
-    [[nodiscard]] std::size_t color_of(const CellGroup& group) const {
+    [[nodiscard]] std::size_t color_of(const results::CellGroup& group) const {
         return colors.at(group.method);
     }
 };
 
 /// The folders must outlive it.
-[[nodiscard]] ReportData arrange(const std::vector<ResultFolder>& folders);
+[[nodiscard]] ReportData arrange(const std::vector<results::ResultFolder>& folders);
 
 /// A figure of a group: the median over its repetitions, as in summary.md.
-[[nodiscard]] std::optional<double> figure(const CellGroup& group, const char* key,
+[[nodiscard]] std::optional<double> figure(const results::CellGroup& group, const char* key,
                                            const char* inner = nullptr);
 /// Whether a setting of the set has it.
 [[nodiscard]] bool any_has(const ResultSet& set, const char* key, const char* inner = nullptr);
 /// Over the repetitions; nothing where one is not finite.
-[[nodiscard]] std::optional<measure::RunInterval> interval(const CellGroup& group,
+[[nodiscard]] std::optional<measure::RunInterval> interval(const results::CellGroup& group,
                                                            std::uint64_t seed, const char* key,
                                                            const char* inner = nullptr);
 
 /// A column of the frames, per frame the median over the repetitions; NaN where it is absent. Empty
 /// where no repetition has it.
-[[nodiscard]] std::vector<double> frame_column(const ResultSet& set, const CellGroup& group,
-                                               const char* column);
+[[nodiscard]] std::vector<double> frame_column(const ResultSet& set,
+                                               const results::CellGroup& group, const char* column);
 
 /// Indices of at most `most` groups that are ok somewhere, in their order: first one setting of
 /// each method, then a second, ...

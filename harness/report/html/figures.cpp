@@ -21,7 +21,7 @@ void add_columns(Table& table, std::span<const FigureColumn> columns) {
 void add_fields(std::vector<Field>& row, std::span<const FigureColumn> columns,
                 const std::vector<const Json::Value*>& objects) {
     for (const FigureColumn& column : columns) {
-        const std::vector<double> values = numbers_of(objects, column.key, column.inner);
+        const std::vector<double> values = results::numbers_of(objects, column.key, column.inner);
         const auto value = values.empty()    ? std::nullopt
                            : column.greatest ? std::optional(*std::ranges::max_element(values))
                                              : measure::median(values);
@@ -40,7 +40,7 @@ Plot bars_of(const ReportData& data, const ResultSet& set, const std::string& id
     plot.y_title = "method";
     plot.can_be_logarithmic = true;
     for (const std::size_t i : chosen) {
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         plot.categories.push_back({group.label, group.method, data.color_of(group)});
     }
     return plot;
@@ -50,7 +50,7 @@ Table figure_table(const ResultSet& set, const char* id, const std::string& capt
                    std::span<const FigureColumn> columns) {
     Table table = table_of(set, id, caption);
     add_columns(table, columns);
-    for (const CellGroup& group : set.groups) {
+    for (const results::CellGroup& group : set.groups) {
         std::vector<Field>& row = table.rows.emplace_back();
         row.push_back(text_field(group.label));
         add_fields(row, columns, group.good);

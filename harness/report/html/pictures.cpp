@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "base/files.h"
 #include "base/modules.h"
 #include "measure/modules/ssim.h"
+#include "picture/png.h"
 #include "report/html/text.h"
-#include "report/png.h"
-#include "report/results.h"
 
 namespace lodbench::report::html {
 
@@ -23,7 +23,7 @@ std::string data_uri(const char* type, std::span<const std::uint8_t> bytes) {
     return fmt::format("data:image/{};base64,{}", type, base64(bytes));
 }
 
-std::optional<std::string> webp_uri(const Image& image) {
+std::optional<std::string> webp_uri(const picture::Image& image) {
     void* symbol = base::find_in_module("webp", "lodbench_encode_webp");
     if (symbol == nullptr) return std::nullopt;
     std::vector<std::uint8_t> bytes;
@@ -47,9 +47,9 @@ std::string PictureBudget::embed(const std::filesystem::path& png) {
         ++left_out_;
         return {};
     }
-    const std::string file = read_text(png);
+    const std::string file = base::read_text(png);
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
-    const std::optional<Image> image = read_png(bytes);
+    const std::optional<picture::Image> image = picture::read_png(bytes);
     if (!image) return unusable("damaged, or no PNG");
     std::string uri = webp_uri(*image).value_or("");
     if (uri.empty() || uri.size() > file.size() * 4 / 3) uri = data_uri("png", bytes);

@@ -52,7 +52,7 @@ void add_further(Page& page, const ReportData& data) {
 
 }  // namespace
 
-Report make_report(const std::vector<ResultFolder>& folders) {
+Report make_report(const std::vector<results::ResultFolder>& folders) {
     const ReportData data = arrange(folders);
     Page page;
     for (const ResultSet& set : data.sets) {
@@ -66,7 +66,8 @@ Report make_report(const std::vector<ResultFolder>& folders) {
     add_context(page, data);
     add_cells(page, data);
     std::string names;
-    for (const ResultFolder& folder : folders) names += (names.empty() ? "" : ", ") + folder.name;
+    for (const results::ResultFolder& folder : folders)
+        names += (names.empty() ? "" : ", ") + folder.name;
     return {page.document("Terrain level of detail, measured: " + names, lead_html(data)),
             page.csv().files()};
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/result_folder.h"
+#include "results/folder.h"
 
 namespace lodbench::report::html {
 
@@ -16,6 +16,6 @@ struct Report {
 
 /// A pure function of the folders and of the pictures in them. Throws EnvironmentError where a
 /// picture that is there cannot be read.
-[[nodiscard]] Report make_report(const std::vector<ResultFolder>& folders);
+[[nodiscard]] Report make_report(const std::vector<results::ResultFolder>& folders);
 
 }  // namespace lodbench::report::html

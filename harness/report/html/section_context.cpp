@@ -8,7 +8,7 @@
 #include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
-#include "report/json.h"
+#include "results/json.h"
 
 namespace lodbench::report::html {
 
@@ -16,11 +16,12 @@ namespace {
 
 std::string definition(const char* term, const Json::Value& value) {
     if (value.isNull() || value.isObject() || value.isArray()) return {};
-    return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", term, escape(value_text(value)));
+    return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", term,
+                       escape(results::value_text(value)));
 }
 
 /// Each warning once; those that the run does not raise with the number of cells that do.
-std::vector<std::string> warnings_of(const ResultFolder& folder) {
+std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
     std::vector<std::string> texts = folder.warnings;
     for (const Json::Value& warning : folder.run["warnings"]) {
         if (warning.isString()) texts.push_back(warning.asString());
@@ -37,8 +38,8 @@ std::vector<std::string> warnings_of(const ResultFolder& folder) {
                                           : fmt::format("{} ({} and {} more)", warning,
                                                         names.front(), names.size() - 1));
     }
-    for (const CellGroup& group : group_cells(folder.cells)) {
-        for (const std::string& text : disagreements_of(group)) {
+    for (const results::CellGroup& group : results::group_cells(folder.cells)) {
+        for (const std::string& text : results::disagreements_of(group)) {
             texts.push_back(fmt::format("{}, {}: {}", group.label, group.scenario, text));
         }
     }
@@ -46,26 +47,26 @@ std::vector<std::string> warnings_of(const ResultFolder& folder) {
 }
 
 /// What one must know of the numbers before one reads them.
-std::string conditions_html(const ResultFolder& folder) {
+std::string conditions_html(const results::ResultFolder& folder) {
     const Json::Value& run = folder.run;
     const Json::Value& gl = run["gl"];
     std::string html = "<dl class=\"conditions\">\n";
     html += definition("Results", folder.name);
-    const Json::Value& software = member_of(gl, "software");
-    const std::string renderer = value_text(member_of(gl, "renderer"));
+    const Json::Value& software = results::member_of(gl, "software");
+    const std::string renderer = results::value_text(results::member_of(gl, "renderer"));
     html += definition("Renderer", software.isBool() && software.asBool()
                                        ? renderer +
                                              ", in software: times compare methods on this "
                                              "machine, no more"
                                        : renderer);
-    html += definition("Timer", member_of(gl, "timer_verdict"));
+    html += definition("Timer", results::member_of(gl, "timer_verdict"));
     html += definition("CPU", run["cpu"]);
-    html += definition("lodbench", fmt::format("{}, {}", value_text(run["tool_version"]),
-                                               value_text(run["commit"])));
+    html += definition("lodbench", fmt::format("{}, {}", results::value_text(run["tool_version"]),
+                                               results::value_text(run["commit"])));
     return html + "</dl>\n";
 }
 
-std::string machine_html(const ResultFolder& folder) {
+std::string machine_html(const results::ResultFolder& folder) {
     const Json::Value& run = folder.run;
     const Json::Value& gl = run["gl"];
     std::string html = "<dl class=\"conditions\">\n";
@@ -74,8 +75,8 @@ std::string machine_html(const ResultFolder& folder) {
     html += definition("System", run["os"]);
     html += definition("Kernel", run["kernel"]);
     html += definition("Cores", run["cores"]);
-    html += definition("OpenGL", member_of(gl, "version"));
-    html += definition("Device", member_of(gl, "device"));
+    html += definition("OpenGL", results::member_of(gl, "version"));
+    html += definition("Device", results::member_of(gl, "device"));
     html += definition("Build", run["build_type"]);
     html += definition("Compiler", run["compiler"]);
     return html + "</dl>\n";
@@ -107,8 +108,8 @@ constexpr FigureColumn kCellColumns[] = {
 
 std::string lead_html(const ReportData& data) {
     std::string html;
-    for (const ResultFolder& folder : *data.folders) html += conditions_html(folder);
-    for (const ResultFolder& folder : *data.folders) {
+    for (const results::ResultFolder& folder : *data.folders) html += conditions_html(folder);
+    for (const results::ResultFolder& folder : *data.folders) {
         const std::vector<std::string> warnings = warnings_of(folder);
         if (warnings.empty()) continue;
         html += fmt::format(
@@ -127,16 +128,17 @@ void add_context(Page& page, const ReportData& data) {
         page.heading(3, "Pictures that cannot be shown", "unusable-pictures");
         page.list(unusable);
     }
-    for (const ResultFolder& folder : *data.folders) {
+    for (const results::ResultFolder& folder : *data.folders) {
         if (data.folders->size() > 1) page.heading(3, folder.name);
         page.raw(machine_html(folder));
         for (const Json::Value& scenario : folder.run["scenarios"]) {
             if (!scenario.isObject()) continue;
-            page.open_details(
-                fmt::format("Scenario {}, as its file says; flown were {} frames of {} × {} pixels",
-                            value_text(scenario["name"]), value_text(scenario["frames"]),
-                            value_text(scenario["width"]), value_text(scenario["height"])));
-            page.raw("<pre tabindex=\"0\">" + escape(value_text(scenario["text"])) + "</pre>\n");
+            page.open_details(fmt::format(
+                "Scenario {}, as its file says; flown were {} frames of {} × {} pixels",
+                results::value_text(scenario["name"]), results::value_text(scenario["frames"]),
+                results::value_text(scenario["width"]), results::value_text(scenario["height"])));
+            page.raw("<pre tabindex=\"0\">" + escape(results::value_text(scenario["text"])) +
+                     "</pre>\n");
             page.close_details();
         }
         Json::Value run = folder.run;
@@ -147,7 +149,7 @@ void add_context(Page& page, const ReportData& data) {
             }
         }
         page.open_details("run.json");
-        page.raw("<pre tabindex=\"0\">" + escape(to_text(run, true)) + "</pre>\n");
+        page.raw("<pre tabindex=\"0\">" + escape(results::to_text(run, true)) + "</pre>\n");
         page.paragraph(
             "Without the list of planned cells and the scenarios' text, which stands above.",
             "note");
@@ -157,7 +159,7 @@ void add_context(Page& page, const ReportData& data) {
 
 void add_cells(Page& page, const ReportData& data) {
     page.heading(2, "Every cell", "cells");
-    for (const ResultFolder& folder : *data.folders) {
+    for (const results::ResultFolder& folder : *data.folders) {
         Table table;
         table.id = "cells";
         table.caption = "The cells of " + folder.name + ", as cells.jsonl has them";
@@ -173,7 +175,7 @@ void add_cells(Page& page, const ReportData& data) {
             const Json::Value& values = cell["params"];
             for (auto param = values.begin(); param != values.end(); ++param) {
                 params += fmt::format("{}{}={}", params.empty() ? "" : " ", param.name(),
-                                      value_text(*param));
+                                      results::value_text(*param));
             }
             std::vector<Field>& row = table.rows.emplace_back();
             row = {text_field(cell["cell"].asString()), text_field(cell["scenario"].asString()),

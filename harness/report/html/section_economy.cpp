@@ -22,9 +22,9 @@ constexpr FigureColumn kDemands[] = {
     {"samples served", "samples_served", nullptr, 0, 1,
      "height samples asked for until the timing replay had ended, those for preparing included"},
     {"tiles served", "tiles_served", nullptr, 0, 1, "tiles of which they came"},
-    {"read, MiB", "terrain_bytes_read", nullptr, 1, kMebibyte,
+    {"read, MiB", "terrain_bytes_read", nullptr, 1, results::kMebibyte,
      "from the terrain's file; 0 for a terrain in memory"},
-    {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte, "allocated on the GPU"},
+    {"GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte, "allocated on the GPU"},
 };
 
 constexpr FigureColumn kFrameFigures[] = {
@@ -41,13 +41,13 @@ constexpr FigureColumn kFrameFigures[] = {
 };
 
 /// By frame, the objects of the repetitions that compared it.
-std::map<int, std::vector<const Json::Value*>> compared_frames(const CellGroup& group) {
+std::map<int, std::vector<const Json::Value*>> compared_frames(const results::CellGroup& group) {
     std::map<int, std::vector<const Json::Value*>> frames;
     for (const Json::Value* cell : group.good) {
-        const Json::Value& economy = member_of(*cell, "economy");
+        const Json::Value& economy = results::member_of(*cell, "economy");
         if (!economy.isArray()) continue;
         for (const Json::Value& object : economy) {
-            const Json::Value& frame = member_of(object, "frame");
+            const Json::Value& frame = results::member_of(object, "frame");
             if (frame.isInt()) frames[frame.asInt()].push_back(&object);
         }
     }
@@ -62,7 +62,7 @@ Plot demand_plot(const ReportData& data, const ResultSet& set) {
     plot.y_title = "height samples asked for";
     plot.can_be_logarithmic = plot.logarithmic = true;
     std::map<std::string, Series> by_method;
-    for (const CellGroup& group : set.groups) {
+    for (const results::CellGroup& group : set.groups) {
         const auto error = figure(group, "screen_error_px", "max_covered");
         const auto samples = figure(group, "samples_served");
         if (!error || !samples) continue;
@@ -79,7 +79,7 @@ Plot demand_plot(const ReportData& data, const ResultSet& set) {
         Series needed{"what the views needed"};
         needed.ink = true;
         needed.dots = false;
-        for (const NeededTiles& entry : set.flight->needed) {
+        for (const results::NeededTiles& entry : set.flight->needed) {
             needed.marks.push_back({entry.target_px, entry.samples});
         }
         plot.series.push_back(std::move(needed));
@@ -100,7 +100,7 @@ void add_demand(Page& page, const ReportData& data, const ResultSet& set) {
                           {"samples", "samples"},
                           {"tiles", "tiles", true, "of all frames together"},
                           {"most tiles in a frame", "most_tiles_in_a_frame"}};
-        for (const NeededTiles& entry : set.flight->needed) {
+        for (const results::NeededTiles& entry : set.flight->needed) {
             needed.rows.push_back({{fmt::format("{:g}", entry.target_px), exact(entry.target_px)},
                                    number_field(entry.samples, 0),
                                    number_field(entry.tiles, 0),
@@ -126,7 +126,7 @@ Plot ratio_plot(const ReportData& data, const ResultSet& set) {
     for (std::size_t c = 0; c < chosen.size(); ++c) {
         std::vector<double> ratios;
         for (const auto& [frame, objects] : compared_frames(set.groups[chosen[c]])) {
-            const auto ratio = measure::median(numbers_of(objects, "p999", "ratio"));
+            const auto ratio = measure::median(results::numbers_of(objects, "p999", "ratio"));
             if (ratio) ratios.push_back(*ratio);
         }
         if (ratios.empty()) continue;
@@ -147,7 +147,7 @@ void add_compared_frames(Page& page, const ReportData& data, const ResultSet& se
     Table table = table_of(set, "economy_frames", "Triangles and what would do, " + set.title);
     table.columns.push_back({"frame", "frame"});
     add_columns(table, kFrameFigures);
-    for (const CellGroup& group : set.groups) {
+    for (const results::CellGroup& group : set.groups) {
         for (const auto& [frame, objects] : compared_frames(group)) {
             std::vector<Field>& row = table.rows.emplace_back();
             row.push_back(text_field(group.label));

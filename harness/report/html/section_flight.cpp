@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "picture/truth_picture.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
-#include "report/truth_picture.h"
 
 namespace lodbench::report::html {
 
@@ -25,7 +25,7 @@ Plot curve_plot(const ReportData& data, const ResultSet& set, const char* column
     bool thinner = false;
     const std::vector<std::size_t> chosen = choose_groups(set, kMostCurves);
     for (const std::size_t i : chosen) {
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         const std::vector<double> values = frame_column(set, group, column);
         std::vector<Mark> marks;
         for (std::size_t frame = 0; frame < values.size(); ++frame) {
@@ -62,7 +62,7 @@ struct MapFrame {
 
 /// The flight with ground around it: a cut-out of a large terrain, else all of it; and the flight
 /// where it leads beyond.
-MapFrame frame_of(const FlightRecord& flight) {
+MapFrame frame_of(const results::FlightRecord& flight) {
     glm::dvec2 first = flight.positions.front();
     glm::dvec2 last = first;
     for (const glm::dvec3& position : flight.positions) {
@@ -79,7 +79,7 @@ MapFrame frame_of(const FlightRecord& flight) {
     return {low, high, 480 / std::max({high.x - low.x, high.y - low.y, 1e-9})};
 }
 
-std::string path_svg(const FlightRecord& flight, const MapFrame& map) {
+std::string path_svg(const results::FlightRecord& flight, const MapFrame& map) {
     std::string line;
     const std::size_t count = flight.positions.size();
     const std::size_t step = std::max<std::size_t>(1, count / kMostCurvePoints);
@@ -91,7 +91,7 @@ std::string path_svg(const FlightRecord& flight, const MapFrame& map) {
 }
 
 /// A short stroke in the direction of view, at ten frames of the flight.
-std::string views_svg(const FlightRecord& flight, const MapFrame& map) {
+std::string views_svg(const results::FlightRecord& flight, const MapFrame& map) {
     constexpr double kLength = 16;
     std::string svg;
     const std::size_t count = flight.positions.size();
@@ -118,10 +118,10 @@ std::string views_svg(const FlightRecord& flight, const MapFrame& map) {
 std::string worst_svg(const ReportData& data, const ResultSet& set, const MapFrame& map) {
     std::string svg;
     for (const std::size_t i : choose_groups(set, kMostCurves)) {
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         for (const Json::Value* cell : group.good) {
             const Json::Value& frame =
-                member_of(member_of(*cell, "pixel_error_px", "worst"), "frame");
+                results::member_of(results::member_of(*cell, "pixel_error_px", "worst"), "frame");
             if (!frame.isUInt64() || frame.asUInt64() >= set.flight->positions.size()) continue;
             const glm::dvec2 at = map.place(set.flight->positions[frame.asUInt64()]);
             svg += fmt::format(
@@ -159,7 +159,7 @@ void add_curves(Page& page, const ReportData& data, const ResultSet& set) {
 
 void add_map(Page& page, const ReportData& data, const ResultSet& set) {
     page.heading(3, "Where it flies", set.id + "-map");
-    const FlightRecord* flight = set.flight;
+    const results::FlightRecord* flight = set.flight;
     if (flight == nullptr || flight->positions.empty()) {
         page.not_measured("these results hold no flights/" + set.scenario +
                           ".json (they are of an older lodbench, or no cell is ok)");
@@ -190,7 +190,7 @@ void add_map(Page& page, const ReportData& data, const ResultSet& set) {
     svg += worst_svg(data, set, map);
     // A bar of a round length, a fifth of the map or less.
     const double extent = size.x / map.scale;
-    double length = nice_scale(extent / 5);
+    double length = picture::nice_scale(extent / 5);
     if (length > extent / 3) length /= 2;
     svg += fmt::format(
         "<path class=\"scale-bar\" d=\"M0 {0:.1f}v6h{1:.1f}v-6\"/><text x=\"{2:.1f}\" "

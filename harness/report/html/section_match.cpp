@@ -15,21 +15,21 @@ namespace {
 
 constexpr FigureColumn kCosts[] = {{"median frame, ms", "frame_ms", "median"},
                                    {"triangles", "triangles", "mean", 0, 1, "mean per frame"},
-                                   {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte},
+                                   {"GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte},
                                    {"preprocessing, s", "prepare_s"}};
 
-std::string quantity_title(const MatchTarget& target) {
+std::string quantity_title(const results::MatchTarget& target) {
     switch (target.quantity) {
-        case MatchTarget::Quantity::pixel_error:
+        case results::MatchTarget::Quantity::pixel_error:
             return fmt::format("pixel error {}, px", name_of(target.metric));
-        case MatchTarget::Quantity::triangles: return "triangles a frame, mean";
-        case MatchTarget::Quantity::frame_ms: break;
+        case results::MatchTarget::Quantity::triangles: return "triangles a frame, mean";
+        case results::MatchTarget::Quantity::frame_ms: break;
     }
     return "mean frame time, ms";
 }
 
-int digits_of(const MatchTarget& target) {
-    return target.quantity == MatchTarget::Quantity::triangles ? 0 : 3;
+int digits_of(const results::MatchTarget& target) {
+    return target.quantity == results::MatchTarget::Quantity::triangles ? 0 : 3;
 }
 
 /// As `match` prints a knob's value.
@@ -41,7 +41,7 @@ Field optional_text(const std::optional<std::string>& text) {
     return text ? text_field(*text) : Field{"-", ""};
 }
 
-Table search_table(const ResultSet& set, const MatchRecord& match) {
+Table search_table(const ResultSet& set, const results::MatchRecord& match) {
     Table table = table_of(set, "match", "The search, " + set.title);
     table.columns.push_back({"knob", "knob", false, "the parameter that was searched"});
     table.columns.push_back({"value", "knob_value", true, "nearest to the target"});
@@ -54,7 +54,7 @@ Table search_table(const ResultSet& set, const MatchRecord& match) {
                              "whether what was measured rises, or falls, with the knob throughout; "
                              "where not, another value may meet the target too"});
     table.columns.push_back({"failure", "failure", false, "why a probe gave nothing"});
-    for (const MatchRecord::Method& method : match.methods) {
+    for (const results::MatchRecord::Method& method : match.methods) {
         const Field monotone =
             method.monotone ? text_field(*method.monotone ? "yes" : "no") : Field{"-", ""};
         table.rows.push_back(
@@ -67,11 +67,11 @@ Table search_table(const ResultSet& set, const MatchRecord& match) {
 }
 
 /// Of the methods as they were flown at the end.
-Table cost_table(const ResultSet& set, const MatchTarget& target) {
+Table cost_table(const ResultSet& set, const results::MatchTarget& target) {
     Table table = table_of(set, "equal_accuracy", "Flown where they met it, " + set.title);
     table.columns.push_back({quantity_title(target), "measured", true, "in this flight"});
     add_columns(table, kCosts);
-    for (const CellGroup& group : set.groups) {
+    for (const results::CellGroup& group : set.groups) {
         std::vector<double> measured;
         for (const Json::Value* cell : group.good) {
             if (const auto value = target.measured(*cell)) measured.push_back(*value);
@@ -84,7 +84,7 @@ Table cost_table(const ResultSet& set, const MatchTarget& target) {
 }
 
 /// Over the number of the probe, not over the knob's value: knobs have units of their own.
-Plot search_plot(const ReportData& data, const ResultSet& set, const MatchRecord& match) {
+Plot search_plot(const ReportData& data, const ResultSet& set, const results::MatchRecord& match) {
     Plot plot;
     plot.id = set.id + "-match-probes";
     plot.title = "The search for the target";
@@ -94,12 +94,12 @@ Plot search_plot(const ReportData& data, const ResultSet& set, const MatchRecord
     plot.can_be_logarithmic = plot.logarithmic = true;
     std::size_t most = 1;
     std::size_t absent = 0;
-    for (const MatchRecord::Method& method : match.methods) {
+    for (const results::MatchRecord::Method& method : match.methods) {
         if (plot.series.size() == kMostCurves) break;
         Series series{method.method, method.method, data.colors.at(method.method)};
         std::vector<Mark> marks;
         for (std::size_t i = 0; i < method.probes.size(); ++i) {
-            const MatchRecord::Probe& probe = method.probes[i];
+            const results::MatchRecord::Probe& probe = method.probes[i];
             if (!probe.value || !std::isfinite(*probe.value)) {
                 ++absent;
                 continue;
@@ -137,7 +137,7 @@ Plot search_plot(const ReportData& data, const ResultSet& set, const MatchRecord
 
 void add_match(Page& page, const ReportData& data, const ResultSet& set) {
     if (!set.folder->match) return;
-    const MatchRecord& match = *set.folder->match;
+    const results::MatchRecord& match = *set.folder->match;
     page.heading(3, "Equal accuracy", set.id + "-match");
     page.paragraph(fmt::format("Target: {}, within {:.3g} %.", match.target.words(),
                                100 * match.target.tolerance));

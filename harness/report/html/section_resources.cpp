@@ -14,9 +14,9 @@ constexpr FigureColumn kResources[] = {
     {"preprocessing, s", "prepare_s"},
     {"CPU time, s", "prepare_cpu_s"},
     {"start-up, s", "upload_s"},
-    {"allocated on the GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte},
-    {"peak resident size, MiB", "peak_rss_bytes", nullptr, 1, kMebibyte},
-    {"uploaded a frame, MiB", "uploaded_bytes", "mean", 3, kMebibyte},
+    {"allocated on the GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte},
+    {"peak resident size, MiB", "peak_rss_bytes", nullptr, 1, results::kMebibyte},
+    {"uploaded a frame, MiB", "uploaded_bytes", "mean", 3, results::kMebibyte},
 };
 
 /// Of them, those that are plotted.

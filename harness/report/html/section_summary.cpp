@@ -31,16 +31,16 @@ constexpr FigureColumn kFigures[] = {
     {"honesty", "bound_honesty", nullptr, 3, 1,
      "greatest screen error / claimed bound: above 1 the claim does not hold"},
     {"prepare, s", "prepare_s", nullptr, 3, 1, "preprocessing, wall time"},
-    {"GPU, MiB", "gpu_bytes", nullptr, 1, kMebibyte, "allocated on the GPU"},
-    {"RSS, MiB", "peak_rss_bytes", nullptr, 0, kMebibyte,
+    {"GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte, "allocated on the GPU"},
+    {"RSS, MiB", "peak_rss_bytes", nullptr, 0, results::kMebibyte,
      "greatest resident memory of the method's process", true},
 };
 
 /// Groups on the front of P99.9 error against frame time.
 std::set<std::size_t> fastest_for_their_error(const ResultSet& set) {
     std::vector<TradePoint> points;
-    for (const CellGroup& group : set.groups) {
-        points.push_back(trade_point(group, ErrorMetric::p999));
+    for (const results::CellGroup& group : set.groups) {
+        points.push_back(trade_point(group, results::ErrorMetric::p999));
     }
     const std::vector<std::size_t> front = pareto_front(points);
     return {front.begin(), front.end()};
@@ -84,7 +84,7 @@ void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
          "no other setting here is both faster (fps) and nearer to the truth (P99.9)"});
     const std::set<std::size_t> front = fastest_for_their_error(set);
     for (std::size_t i = 0; i < set.groups.size(); ++i) {
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         std::vector<Field>& row = table.rows.emplace_back();
         row.push_back(text_field(group.label));
         const auto fps = interval(group, set.seed, "fps");
@@ -111,7 +111,7 @@ void add_failures(Page& page, const ResultSet& set) {
     table.columns.push_back({"repetition", "repetition", true});
     table.columns.push_back({"status", "status", false});
     table.columns.push_back({"reason", "reason", false});
-    for (const CellGroup& group : set.groups) {
+    for (const results::CellGroup& group : set.groups) {
         for (const Json::Value* cell : group.cells) {
             if ((*cell)["status"].asString() == "ok") continue;
             table.rows.push_back({text_field(group.label),
@@ -134,7 +134,7 @@ void add_legend(Page& page, const ReportData& data, const ResultSet& set) {
                     escape(set.title));
     std::string method;
     for (const std::size_t i : drawn) {
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         const std::size_t color = data.color_of(group);
         Series series{group.label};
         series.color = color;

@@ -51,9 +51,9 @@ bool spreads(const std::vector<TradePoint>& points) {
 Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) {
     std::vector<TradePoint> points;
     std::size_t infinite = 0;
-    for (const CellGroup& group : set.groups) {
+    for (const results::CellGroup& group : set.groups) {
         const auto value = figure(group, cost.key, cost.inner);
-        const auto error = pixel_error(group, ErrorMetric::p999);
+        const auto error = results::pixel_error(group, results::ErrorMetric::p999);
         if (value && error && std::isinf(*error)) ++infinite;
         points.push_back({value ? *value / cost.unit : kAbsent, error.value_or(kAbsent)});
     }
@@ -77,7 +77,7 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
     std::map<std::string, Series> by_method;
     for (std::size_t i = 0; i < set.groups.size(); ++i) {
         if (!std::isfinite(points[i].cost) || !std::isfinite(points[i].error)) continue;
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         Series& series = by_method[group.method];
         series.name = series.toggle = group.method;
         series.color = data.color_of(group);
@@ -102,8 +102,8 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
 void add_hypervolume(Page& page, const ResultSet& set) {
     std::map<std::string, std::vector<TradePoint>> methods;
     std::vector<TradePoint> points;
-    for (const CellGroup& group : set.groups) {
-        points.push_back(trade_point(group, ErrorMetric::p999));
+    for (const results::CellGroup& group : set.groups) {
+        points.push_back(trade_point(group, results::ErrorMetric::p999));
         methods[group.method].push_back(points.back());
     }
     const auto reference = reference_point(points);

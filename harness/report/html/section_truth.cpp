@@ -24,7 +24,7 @@ void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
     std::vector<std::size_t> claiming;
     std::string silent;
     for (const std::size_t i : choose_groups(set, kMostBars)) {
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         const auto honesty = figure(group, "bound_honesty");
         if (!honesty) {
             silent += (silent.empty() ? "" : ", ") + group.label;
@@ -83,10 +83,10 @@ void add_worst_pictures(Page& page, const ResultSet& set) {
     const std::size_t left_out_before = page.pictures().left_out();
     std::string html;
     for (const std::size_t i : choose_groups(set, set.groups.size())) {
-        const CellGroup& group = set.groups[i];
+        const results::CellGroup& group = set.groups[i];
         for (const Json::Value* cell : group.good) {
             // Of later repetitions there is none.
-            if (member_of(*cell, "pixel_error_px").isNull()) continue;
+            if (results::member_of(*cell, "pixel_error_px").isNull()) continue;
             const std::string id = (*cell)["cell"].asString();
             const std::string uri =
                 page.pictures().embed(set.folder->path / "shots" / (id + "__worst.png"));

@@ -1,0 +1,42 @@
+#include "report/summary.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "report/table.h"
+
+namespace lodbench::report {
+
+std::string summary_text(const std::vector<Json::Value>& cells,
+                         const std::vector<std::string>& warnings, const Json::Value& run) {
+    const std::uint64_t seed = run["seed"].asUInt64();
+    const auto line = [](const char* title, const Json::Value& value) {
+        return value.isNull() ? std::string()
+                              : fmt::format("- {}: {}\n", title, markdown_text(value.asString()));
+    };
+    // Read as a comment: the tables first, what they depend on folded away below.
+    std::string text = markdown_table(table_rows(cells, seed));
+    const auto fold = [&text](const std::string& title) {
+        text += fmt::format("\n<details><summary>{}</summary>\n\n", title);
+    };
+    if (!warnings.empty()) {
+        fold(fmt::format("Warnings: {}", warnings.size()));
+        for (const std::string& warning : warnings) {
+            text += fmt::format("- {}\n", markdown_text(warning));
+        }
+        text += "\n</details>\n";
+    }
+    fold("Context");
+    text += line("lodbench", run["tool_version"]) + line("commit", run["commit"]);
+    text +=
+        line("command", run["command_line"]) + line("system", run["os"]) + line("CPU", run["cpu"]);
+    if (run["gl"].isObject()) {
+        text += line("renderer", run["gl"]["renderer"]) + line("OpenGL", run["gl"]["version"]);
+        text += line("timer", run["gl"]["timer_verdict"]);
+    }
+    text += fmt::format("- seed: {}\n\n</details>\n", seed);
+    return text;
+}
+
+}  // namespace lodbench::report

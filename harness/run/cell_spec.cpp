@@ -1,0 +1,81 @@
+// A cell's task on its way to the process that flies it.
+
+#include <fmt/format.h>
+
+#include "api/error.h"
+#include "results/json.h"
+#include "run/cell.h"
+
+namespace lodbench::run {
+
+std::string write_spec(const CellSpec& spec) {
+    Json::Value json;
+    json["id"] = spec.id;
+    json["scenario_file"] = spec.scenario_file.string();
+    json["scenario_origin"] = spec.scenario_origin.string();
+    Json::Value& overrides = json["overrides"] = Json::objectValue;
+    if (spec.overrides.frames) overrides["frames"] = *spec.overrides.frames;
+    if (spec.overrides.truth) overrides["truth"] = *spec.overrides.truth;
+    if (spec.overrides.economy) {
+        Json::Value& frames = overrides["economy"] = Json::arrayValue;
+        for (const int frame : *spec.overrides.economy) frames.append(frame);
+    }
+    if (spec.overrides.seed) overrides["seed"] = Json::UInt64(*spec.overrides.seed);
+    if (spec.overrides.repetitions) overrides["repetitions"] = *spec.overrides.repetitions;
+    if (spec.overrides.viewport) {
+        overrides["width"] = spec.overrides.viewport->width;
+        overrides["height"] = spec.overrides.viewport->height;
+    }
+    json["method"] = spec.method;
+    json["plugin"] = spec.plugin.string();
+    json["settings"] = Json::arrayValue;
+    for (const auto& [name, value] : spec.settings) {
+        Json::Value pair = Json::arrayValue;
+        pair.append(name);
+        pair.append(value);
+        json["settings"].append(pair);
+    }
+    json["repetition"] = spec.repetition;
+    json["seed"] = Json::UInt64(spec.seed);
+    json["device"] = spec.device;
+    json["out"] = spec.out.string();
+    return results::exact_text(json);
+}
+
+CellSpec read_spec(std::string_view text, const std::string& where) {
+    try {
+        const Json::Value json = results::parse_json(text, where);
+        CellSpec spec;
+        spec.id = results::get_string(json, "id", where);
+        spec.scenario_file = results::get_string(json, "scenario_file", where);
+        spec.scenario_origin = results::get_string(json, "scenario_origin", where);
+        const Json::Value& overrides = json["overrides"];
+        if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
+        if (overrides.isMember("truth")) spec.overrides.truth = overrides["truth"].asBool();
+        if (overrides.isMember("economy")) {
+            auto& frames = spec.overrides.economy.emplace();
+            for (const Json::Value& frame : overrides["economy"]) frames.push_back(frame.asInt());
+        }
+        if (overrides.isMember("seed")) spec.overrides.seed = overrides["seed"].asUInt64();
+        if (overrides.isMember("repetitions"))
+            spec.overrides.repetitions = overrides["repetitions"].asInt();
+        if (overrides.isMember("width")) {
+            spec.overrides.viewport =
+                Viewport{overrides["width"].asInt(), overrides["height"].asInt()};
+        }
+        spec.method = results::get_string(json, "method", where);
+        spec.plugin = results::get_string(json, "plugin", where);
+        for (const Json::Value& pair : results::get_array(json, "settings", where)) {
+            spec.settings.emplace_back(pair[0].asString(), pair[1].asString());
+        }
+        spec.repetition = json["repetition"].asInt();
+        spec.seed = json["seed"].asUInt64();
+        spec.device = results::get_string(json, "device", where);
+        spec.out = results::get_string(json, "out", where);
+        return spec;
+    } catch (const Json::Exception& error) {
+        throw InputError(fmt::format("{}: {}", where, error.what()));
+    }
+}
+
+}  // namespace lodbench::run
