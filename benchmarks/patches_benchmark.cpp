@@ -141,7 +141,10 @@ Flown fly(const std::shared_ptr<const terrain::HeightField>& terrain, const char
         flown.uploaded += double(stage.method_uploaded_bytes() - before) / frames;
         double selected = 0, reused = 0;
         for (const auto& [name, value] : stage.counters()) {
-            if (name == "triangles_without_swaps") flown.triangles += value / frames;
+            // static-patches, which has no swaps, and hybrid-patches.
+            if (name == "triangles" || name == "triangles_without_swaps") {
+                flown.triangles += value / frames;
+            }
             if (name == "patches_selected") selected = value;
             if (name == "patches_reused") reused = value;
             if (name == "cache_bytes") flown.cache_bytes = std::max(flown.cache_bytes, value);
