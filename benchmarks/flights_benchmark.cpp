@@ -31,10 +31,9 @@ constexpr int kSide = 33;  ///< vertices of a block
 constexpr double kTrianglesOfABlock = 2.0 * (kSide - 1) * (kSide - 1);
 constexpr std::array<double, 2> kPaper = {1198080, 300000};
 
-/// Metres above the highest sample; degrees.
-constexpr double kAltitudes[] = {100,  250,  500,   1000,  2000,  3000,
-                                 5000, 8000, 12000, 20000, 40000, 77000};
-constexpr double kPitches[] = {0, -5, -10, -15, -20, -30, -45, -60};
+/// Metres above the highest ground on the way; degrees.
+constexpr double kAltitudes[] = {100, 250, 500, 1000, 2000, 3000, 5000, 10000, 30000, 77000};
+constexpr double kPitches[] = {0, -5, -10, -15, -20, -30, -45, -60, -75};
 constexpr double kFieldsOfView[] = {15, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90, 100, 110, 120};
 
 /// Metres: of the samples in the middle from south to north.
