@@ -20,6 +20,7 @@ struct Options {
     [[nodiscard]] lodbench::terrain::TerrainSource source() const {
         lodbench::terrain::TerrainSource source;
         source.file = terrain;
+        if (terrain.extension() == ".tiles") return source;  // says itself what it holds
         source.spacing_x = spacing;
         source.spacing_y = spacing;
         if (terrain.empty()) {
@@ -70,6 +71,10 @@ void store_cost(const Options& options);
 /// `blocks`: multi-context's errors pass, read-backs and draw calls, from 1025 to 4097 a side, up
 /// to `size`; needs a device.
 void blocks_cost(const Options& options);
+
+/// `flights`: the altitude, pitch and lens that come nearest to the triangles of multi-context's
+/// paper; needs a device.
+void flights_search(const Options& options);
 
 /// `staleness`: multi-context's errors over one terrain, with errors of an eye some way behind;
 /// needs a device.

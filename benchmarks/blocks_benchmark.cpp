@@ -22,6 +22,7 @@ using multi_context::BlockErrors;
 using multi_context::ErrorsPass;
 using multi_context::HeightRanges;
 using multi_context::Layout;
+using multi_context::ReadBack;
 using multi_context::Selection;
 using multi_context::Traversal;
 
@@ -48,12 +49,13 @@ double shortest_ms(int repetitions, const Work& work) {
 
 struct Form {
     const char* name;
-    bool whole, bytes;
+    ReadBack read_back;
+    bool bytes;
 };
-constexpr Form kForms[] = {{"whole, float", true, false},
-                           {"whole, byte", true, true},
-                           {"blocks, float", false, false},
-                           {"blocks, byte", false, true}};
+constexpr Form kForms[] = {
+    {"whole, float", ReadBack::whole, false},   {"whole, byte", ReadBack::whole, true},
+    {"blocks, float", ReadBack::blocks, false}, {"blocks, byte", ReadBack::blocks, true},
+    {"tree, float", ReadBack::tree, false},     {"tree, byte", ReadBack::tree, true}};
 
 void errors_of(const Terrain& terrain, float delta, int repetitions) {
     const TerrainInfo& info = terrain.info();
@@ -68,8 +70,9 @@ void errors_of(const Terrain& terrain, float delta, int repetitions) {
     const Camera camera = camera_of(info, 0);
     double read_back_of_whole = 0, all_of_whole = 0;
     for (const Form& form : kForms) {
-        ErrorsPass pass(device, heights, info,
-                        {.k = 33, .delta = delta, .bytes = form.bytes, .whole = form.whole});
+        ErrorsPass pass(
+            device, heights, info,
+            {.k = 33, .delta = delta, .bytes = form.bytes, .read_back = form.read_back});
         BlockErrors errors;
         pass.run(camera, errors);
         std::string levels;
@@ -83,22 +86,19 @@ void errors_of(const Terrain& terrain, float delta, int repetitions) {
             if (level <= 4) levels += fmt::format("{:8.2f}", ms);
             sum += ms;
         }
-        const double read_back = shortest_ms(repetitions, [&] {
-            pass.start_read_back();
-            pass.finish_read_back(errors);
-        });
+        const double read_back = shortest_ms(repetitions, [&] { pass.read_back(errors); });
         const double all = shortest_ms(repetitions, [&] { pass.run(camera, errors); });
         Selection selection;
         const double traversal = shortest_ms(repetitions, [&] {
             Traversal(info, layout, ranges, errors, delta, camera).select(selection);
         });
-        if (form.whole && !form.bytes) {
+        if (form.read_back == ReadBack::whole && !form.bytes) {
             read_back_of_whole = read_back;
             all_of_whole = all;
         }
         fmt::print(
             "  {:5}  {:14}{}{:8.2f} | {:9.0f} {:9.2f} {:9.2f} | {:9.2f} {:9.2f} | {:9.3f} {:6}\n",
-            info.rows, form.name, levels, sum, double(pass.read_back_bytes()) / 1024, read_back,
+            info.rows, form.name, levels, sum, double(errors.read_back_bytes) / 1024, read_back,
             read_back_of_whole / read_back, all, all_of_whole / all, traversal,
             selection.blocks.size());
         std::fflush(stdout);

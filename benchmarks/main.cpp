@@ -29,9 +29,9 @@ std::shared_ptr<const terrain::HeightField> north_west_corner(const Terrain& who
 int main(int argc, char** argv) {
     lodbench::benchmarks::Options options;
     CLI::App app("Rates of lodbench's own code, printed as measured in this run");
-    const std::vector<std::string> known = {"blocks",      "errors", "harness",   "lindstrom",
-                                            "patches",     "rays",   "staleness", "store",
-                                            "tile-counts", "tiles",  "truth"};
+    const std::vector<std::string> known = {"blocks",    "errors",      "flights", "harness",
+                                            "lindstrom", "patches",     "rays",    "staleness",
+                                            "store",     "tile-counts", "tiles",   "truth"};
     std::vector<std::string> subjects = known;
     app.add_option("subjects", subjects,
                    fmt::format("{}; all when none is named", fmt::join(known, ", ")))
@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
     try {
         if (wanted("blocks")) lodbench::benchmarks::blocks_cost(options);
         if (wanted("errors")) lodbench::benchmarks::errors_cost(options);
+        if (wanted("flights")) lodbench::benchmarks::flights_search(options);
         if (wanted("harness")) lodbench::benchmarks::harness_cost();
         if (wanted("lindstrom")) lodbench::benchmarks::lindstrom_cost(options);
         if (wanted("rays")) lodbench::benchmarks::ray_caster_cost(options);

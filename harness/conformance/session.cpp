@@ -123,7 +123,10 @@ Session::Session(const Subject& subject, TerrainPointer terrain, const Settings&
                           .method = subject.method.id,
                           .settings = subject.settings,
                           .device = subject.device};
-    setup.settings.insert(setup.settings.end(), settings.begin(), settings.end());
+    for (const auto& [name, value] : settings) {
+        std::erase_if(setup.settings, [&](const auto& given) { return given.first == name; });
+        setup.settings.emplace_back(name, value);
+    }
     stage_ = std::make_unique<run::Stage>(std::move(setup), *signs_);
     stage_->prepare();
     stage_->upload();

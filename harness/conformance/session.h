@@ -62,7 +62,7 @@ struct NamedCamera {
 class Session {
 public:
     using Settings = std::vector<std::pair<std::string, std::string>>;
-    /// `settings` are added to the subject's.
+    /// `settings` are added to the subject's, and go before those of the same name.
     Session(const Subject& subject, TerrainPointer terrain, const Settings& settings = {},
             const Viewport& viewport = kViewport);
 

@@ -4,8 +4,8 @@
 // Source: Loeffler et al. 2010, section 4.2, after Lindstrom & Pascucci 2002, figure 4: as in
 // common/leb_strip.h, for one triangle instead of four. Vertices are named within the patch: a on
 // the way from its apex to `left`, b on that to `right`, in units of 1 / K; a + b <= K, and the
-// name is a (K + 1) + b. Names depend on neither place nor size nor orientation, fit into 16 bits
-// up to K = 64, and the regular sub-triangulation is one strip for all patches.
+// name is a (K + 1) + b. Names depend on neither place nor size nor orientation and fit into 16
+// bits up to K = 64.
 
 #include <cstdint>
 #include <span>
@@ -115,11 +115,6 @@ private:
     std::uint16_t* out_ = nullptr;
     std::size_t triangles_ = 0;
     bool odd_ = false;  ///< colour of the strip's last vertex
-};
-
-/// The test of the regular sub-triangulation.
-struct EveryVertex {
-    [[nodiscard]] static bool active(int, int) { return true; }
 };
 
 }  // namespace lodbench::hybrid_patches

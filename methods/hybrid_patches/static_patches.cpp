@@ -1,6 +1,7 @@
 // static-patches: each selected patch as its regular sub-triangulation, the comparator of Loeffler
 // 2010, table 2 ("a representative pre-generated patch-based method with a static patch size of 65
-// according to Boesch et al. 2009"). One strip serves every patch; one draw call a frame.
+// according to Boesch et al. 2009"). One list of triangles serves every patch; one draw call a
+// frame.
 
 #include <vector>
 
@@ -8,7 +9,7 @@
 #include "gl/objects.h"
 #include "hybrid_patches/methods.h"
 #include "hybrid_patches/patch_scene.h"
-#include "hybrid_patches/patch_strip.h"
+#include "hybrid_patches/patch_triangles.h"
 
 namespace lodbench::hybrid_patches {
 namespace {
@@ -22,16 +23,15 @@ public:
     void upload(gl::Device& device) override {
         device_ = &device;
         scene_.upload(device);
-        std::vector<std::uint16_t> strip;
-        EveryVertex every;
         const PatchHierarchy& patches = scene_.hierarchy();
-        triangles_ = PatchStripBuilder<EveryVertex>(strip).build(
-            patches.patch(0).triangle, patches.segments(), patches.levels(), every);
-        index_count_ = GLsizei(strip.size());
-        strip_ = gl::Buffer(device, "static-patches: strip", std::span<const std::uint16_t>(strip));
+        const std::vector<std::uint16_t> indices =
+            regular_triangles(patches.patch(0).triangle, patches.segments(), patches.levels());
+        index_count_ = GLsizei(indices.size());
+        triangles_ = gl::Buffer(device, "static-patches: triangles",
+                                std::span<const std::uint16_t>(indices));
         places_ = gl::Buffer(device, "static-patches: selected patches",
                              patches.size() * sizeof(PatchPlace));
-        vertices_ = scene_.vertex_array(device, places_, strip_);
+        vertices_ = scene_.vertex_array(device, places_, triangles_);
     }
 
     void select(const Camera& camera, const Clock&) override {
@@ -45,30 +45,29 @@ public:
 
     void draw(const View&) override {
         if (selected_.empty()) return;
-        device_->draw_elements(scene_.program(), vertices_, GL_TRIANGLE_STRIP, index_count_,
+        device_->draw_elements(scene_.program(), vertices_, GL_TRIANGLES, index_count_,
                                GL_UNSIGNED_SHORT, 0, GLsizei(selected_.size()));
     }
 
     [[nodiscard]] Counters counters() const override {
         return {{"patches_selected", double(selected_.size())},
                 {"patches_total", double(scene_.hierarchy().size())},
-                {"triangles_without_swaps", double(selected_.size() * triangles_)}};
+                {"triangles", double(selected_.size()) * index_count_ / 3}};
     }
 
     void release(gl::Device&) override {
         vertices_ = {};
         places_ = {};
-        strip_ = {};
+        triangles_ = {};
         scene_.release();
     }
 
 private:
     PatchScene scene_;
     gl::Device* device_ = nullptr;
-    gl::Buffer strip_, places_;
+    gl::Buffer triangles_, places_;  ///< indices of a patch's; what is selected
     gl::VertexArray vertices_;
-    GLsizei index_count_ = 0;
-    std::size_t triangles_ = 0;  ///< of a patch
+    GLsizei index_count_ = 0;  ///< of a patch
     std::vector<std::uint32_t> selected_;
     std::vector<PatchPlace> selected_places_;
 };

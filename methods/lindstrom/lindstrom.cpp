@@ -4,6 +4,8 @@
 // methods/common (leb_*.h); here it is uploaded and drawn. Parameters and deviations: README.md.
 
 #include <array>
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -27,32 +29,47 @@ common::RefinerOptions options_from(const Params& params) {
                                                              : common::ErrorKind::midpoint,
             .metric = params.choice("metric") == "planar" ? common::Metric::planar
                                                           : common::Metric::euclidean,
-            .culling = params.boolean("culling")};
+            .culling = params.boolean("culling"),
+            .lambda = params.choice("lambda") == "angle" ? common::LambdaForm::angle
+                                                         : common::LambdaForm::tangent,
+            .morph = params.real("morph")};
 }
 
-/// A strip's indices in one of three buffers in turn, so that writing the next frame's does not
-/// wait for the GPU to finish with the last one's.
+/// What the strip's elements are: numbers of vertices, or, where they morph, vertices.
+void attach(gl::VertexArray& vertices, const gl::Buffer& buffer, std::uint32_t) {
+    vertices.elements(buffer);
+}
+void attach(gl::VertexArray& vertices, const gl::Buffer& buffer, common::MorphedVertex) {
+    using common::MorphedVertex;
+    constexpr auto kStride = sizeof(MorphedVertex);
+    vertices.integer_attribute(0, 1, GL_UNSIGNED_INT, buffer, offsetof(MorphedVertex, index),
+                               kStride);
+    vertices.attribute(1, 1, buffer, offsetof(MorphedVertex, height), kStride);
+}
+
+/// A strip in one of three buffers in turn, so that writing the next frame's does not wait for the
+/// GPU to finish with the last one's.
 class StripRing {
 public:
-    void write(gl::Device& device, std::span<const std::uint32_t> indices) {
+    template <typename Element>
+    void write(gl::Device& device, std::span<const Element> strip) {
         current_ = (current_ + 1) % slots_.size();
         Slot& slot = slots_[current_];
-        if (slot.indices.bytes() < indices.size_bytes()) {
+        if (slot.strip.bytes() < strip.size_bytes()) {
             const std::string label = "lindstrom: strip " + std::to_string(current_);
             slot.vertices = gl::VertexArray(device, label);
             // Half as much again: a flight that slowly sees more grows the buffers a few times
             // only.
-            slot.indices =
-                gl::Buffer(device, label, indices.size_bytes() + indices.size_bytes() / 2);
-            slot.vertices.elements(slot.indices);
+            slot.strip = gl::Buffer(device, label, strip.size_bytes() + strip.size_bytes() / 2);
+            attach(slot.vertices, slot.strip, Element{});
         }
-        slot.indices.write(indices);
+        slot.strip.write(strip);
     }
     [[nodiscard]] const gl::VertexArray& vertices() const { return slots_[current_].vertices; }
 
 private:
     struct Slot {
-        gl::Buffer indices;
+        gl::Buffer strip;
         gl::VertexArray vertices;
     };
     std::array<Slot, 3> slots_;
@@ -71,21 +88,39 @@ public:
 
     void upload(gl::Device& device) override {
         device_ = &device;
-        heights_ =
-            common::LebHeights(device, "lindstrom: heights", refiner_->grid(), rows_, columns_);
+        std::map<std::string, std::string> defines;
+        if (refiner_->morph()) {
+            defines["MORPH"] = "1";  // vertices bring their heights
+        } else {
+            heights_ =
+                common::LebHeights(device, "lindstrom: heights", refiner_->grid(), rows_, columns_);
+            defines = heights_.defines();
+        }
         program_ = gl::Program(
             device, "lindstrom", embedded_shaders(),
             {{GL_VERTEX_SHADER, "lindstrom.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
-            heights_.defines());
+            defines);
         program_.set("padded_size", refiner_->grid().size());
-        program_.set("terrain_size", glm::ivec2(columns_, rows_));
+        if (!refiner_->morph()) {
+            program_.set("terrain_size", glm::ivec2(columns_, rows_));
+        }
     }
 
     void select(const Camera& camera, const Clock&) override {
-        ring_.write(*device_, refiner_->refine(camera).indices());
+        const common::LebStrip& strip = refiner_->refine(camera);
+        if (const auto& morph = refiner_->morph()) {
+            ring_.write(*device_, morph->vertices());
+        } else {
+            ring_.write(*device_, strip.indices());
+        }
     }
 
     void draw(const View&) override {
+        if (refiner_->morph()) {
+            device_->draw_arrays(program_, ring_.vertices(), GL_TRIANGLE_STRIP, 0,
+                                 GLsizei(refiner_->strip().indices().size()));
+            return;
+        }
         heights_.bind();
         device_->draw_elements(program_, ring_.vertices(), GL_TRIANGLE_STRIP,
                                GLsizei(refiner_->strip().indices().size()), GL_UNSIGNED_INT);
@@ -93,8 +128,10 @@ public:
 
     [[nodiscard]] Counters counters() const override {
         const common::LebStrip& strip = refiner_->strip();
-        return {{"strip_indices", double(strip.indices().size())},
-                {"triangles_without_swaps", double(strip.triangle_count())}};
+        return {
+            {"strip_indices", double(strip.indices().size())},
+            {"triangles_without_swaps", double(strip.triangle_count())},
+            {"vertices_morphing", refiner_->morph() ? double(refiner_->morph()->morphing()) : 0.0}};
     }
 
     void release(gl::Device&) override {
@@ -124,7 +161,13 @@ constexpr ParamSpec kParams[] = {
         "metric", "euclidean", "euclidean|planar",
         "distance: the paper's to the eye, or the depth with the image corner's secant, which "
         "bounds the error on a flat image"),
-    boolean_param("culling", true, "coarsens what lies outside the view frustum")};
+    boolean_param("culling", true, "coarsens what lies outside the view frustum"),
+    choice_param("lambda", "tan", "tan|angle",
+                 "pixels per unit of error over distance: height / (2 tan(fov / 2)), or height / "
+                 "fov, which is larger"),
+    real_param("morph", 1, 1, 100,
+               "geomorphing: upper threshold over lower one, between which a vertex moves from its "
+               "edge to its height; 1: none")};
 
 constexpr MethodDescriptor kMethods[] = {
     {.id = "lindstrom",

@@ -19,8 +19,8 @@ namespace lodbench::multi_context {
 /// results: the one that is read, the one that is ready, the one that is made; they change places
 /// under the lock, and nothing is copied or allocated.
 ///
-/// All members are for one thread, that of the owner. What the work throws ends it, and every
-/// later call of `ask`, `take` and `wait_for` throws it again.
+/// All members but `wait_for_tick` are for one thread, that of the owner. What the work throws ends
+/// it, and every later call of `ask`, `take` and `wait_for` throws it again.
 template <typename Request, typename Result>
 class Background {
 public:
@@ -79,8 +79,25 @@ public:
         if (paused_ && ready_number_ < number) {
             throw ContractError("waits for background work that is paused: expected resume first");
         }
+        awaited_ = true;
+        changed_.notify_all();
         changed_.wait(lock, [&] { return failure_ || ready_number_ >= number; });
+        awaited_ = false;
         throw_failure();
+    }
+
+    /// A frame has begun: lets work go on that is spread over frames.
+    void tick() {
+        const std::lock_guard lock(mutex_);
+        ++ticks_;
+        changed_.notify_all();
+    }
+    /// For the work alone: until the next tick, and not at all where the owner waits for a result,
+    /// pauses or ends.
+    void wait_for_tick() {
+        std::unique_lock lock(mutex_);
+        const std::uint64_t seen = ticks_;
+        changed_.wait(lock, [&] { return stopping_ || paused_ || awaited_ || ticks_ != seen; });
     }
 
     /// The work stands still when this returns: what was under way is completed here, but handed
@@ -185,7 +202,9 @@ private:
     Result ready_{};
     Result back_{};  ///< the thread's
     std::uint64_t asked_ = 0, begun_ = 0, ready_number_ = 0, front_number_ = 0, ready_count_ = 0;
+    std::uint64_t ticks_ = 0;
     bool started_ = false, stopping_ = false, paused_ = false, working_ = false;
+    bool awaited_ = false;  ///< the owner is in `wait_for`
     Clock::time_point paused_since_{}, first_begun_{};
     Clock::duration paused_time_{};
     double work_s_ = 0;

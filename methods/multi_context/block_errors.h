@@ -26,14 +26,15 @@ inline float decode_error(std::uint8_t code, float delta) {
 }
 
 /// TBE of section 3.3 for every block of LOD 1 and coarser, in pixels, for one camera. Either the
-/// blocks' errors themselves, or the whole errors texture, from which they are gathered when they
-/// are asked for.
+/// blocks' errors themselves (those below a block that passes may be missing, and are kUnbounded),
+/// or the whole errors texture, from which they are gathered when they are asked for.
 struct BlockErrors {
     Layout layout;
     float delta = 1;                  ///< of the byte codes
     std::vector<float> blocks;        ///< layout.count(); empty: gather
     std::vector<float> texels;        ///< layout.samples() squared, or
     std::vector<std::uint8_t> codes;  ///< the same in bytes
+    std::size_t read_back_bytes = 0;  ///< that were brought from the GPU for this
 
     /// 1 <= lod <= layout.coarsest().
     [[nodiscard]] float at(int lod, int row, int column) const {

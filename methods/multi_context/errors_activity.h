@@ -23,9 +23,8 @@ public:
         : context_(host.make_shared_context()), background_([&, this]() -> Background_::Work {
               // Not this constructor's locals from here on: it returns when this does.
               auto gpu = std::make_shared<Gpu>(*context_, host, heights, terrain, settings);
-              read_back_bytes_ = gpu->pass.read_back_bytes();
-              return [gpu](const Camera& camera, BlockErrors& errors) {
-                  gpu->pass.run(camera, errors);
+              return [this, gpu](const Camera& camera, BlockErrors& errors) {
+                  gpu->pass.run(camera, errors, [this] { background_.wait_for_tick(); });
                   gpu->require_no_errors();
               };
           }) {}
@@ -33,7 +32,6 @@ public:
     using Background_ = Background<Camera, BlockErrors>;
     [[nodiscard]] Background_& background() { return background_; }
     [[nodiscard]] const Background_& background() const { return background_; }
-    [[nodiscard]] std::size_t read_back_bytes() const { return read_back_bytes_; }
 
 private:
     /// All that belongs to the thread's context; made and destroyed on the thread.
@@ -64,7 +62,6 @@ private:
     };
 
     std::unique_ptr<gl::SharedContext> context_;
-    std::size_t read_back_bytes_ = 0;
     Background_ background_;  // last: its thread uses the others
 };
 

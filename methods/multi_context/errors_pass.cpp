@@ -13,12 +13,15 @@ namespace lodbench::multi_context {
 
 namespace {
 
-constexpr GLuint kBlockErrorsBinding = 2;  // of block_errors.comp
-constexpr int kWorkGroup = 8;              // a side, of errors.comp
+constexpr GLuint kBlockErrorsBinding = 2;   // of block_errors.comp
+constexpr GLuint kListedBlocksBinding = 3;  // likewise
+constexpr int kWorkGroup = 8;               // a side, of errors.comp
 
-gl::Program compute_program(gl::Device& device, const char* label, const char* source, bool bytes) {
+gl::Program compute_program(gl::Device& device, const char* label, const char* source, bool bytes,
+                            bool listed = false) {
     std::map<std::string, std::string> defines;
     if (bytes) defines["MULTI_CONTEXT_BYTES"] = "1";
+    if (listed) defines["MULTI_CONTEXT_LIST"] = "1";
     return {device, label, errors_shaders(), {{GL_COMPUTE_SHADER, source}}, defines};
 }
 
@@ -34,7 +37,7 @@ ErrorsPass::ErrorsPass(gl::Device& device, const gl::Texture& heights, const Ter
       group_program_(
           compute_program(device, "multi-context: group errors", "errors.comp", settings.bytes)),
       block_program_(compute_program(device, "multi-context: block errors", "block_errors.comp",
-                                     settings.bytes)),
+                                     settings.bytes, settings.read_back == ReadBack::tree)),
       camera_block_(device, "multi-context: the errors' camera", sizeof(gl::Frozen)) {
     const int samples = layout_.samples();
     errors_ = gl::Texture(device, "multi-context: errors", GL_TEXTURE_2D,
@@ -46,29 +49,36 @@ ErrorsPass::ErrorsPass(gl::Device& device, const gl::Texture& heights, const Ter
     } else {
         glClearTexImage(errors_.name(), 0, GL_RED, GL_FLOAT, &zero);
     }
-    const std::size_t blocks_bytes = layout_.count() * sizeof(float);
-    if (!settings.whole && blocks_bytes > 0) {
-        block_errors_ = gl::Buffer(device, "multi-context: block errors", blocks_bytes, 0);
+    if (layout_.count() == 0) return;  // a single block at full resolution
+    std::size_t bytes = errors_.bytes();
+    if (settings.read_back != ReadBack::whole) {
+        // Of a tree one LOD at a time, of which the finest has the most blocks.
+        const std::size_t finest =
+            std::size_t(layout_.blocks_along(1)) * std::size_t(layout_.blocks_along(1));
+        const bool tree = settings.read_back == ReadBack::tree;
+        bytes = (tree ? finest : layout_.count()) * sizeof(float);
+        block_errors_ = gl::Buffer(device, "multi-context: block errors", bytes, 0);
+        if (tree) {
+            listed_blocks_ =
+                gl::Buffer(device, "multi-context: blocks to gather", finest * sizeof(glm::ivec2));
+        }
     }
-    read_back_bytes_ = settings.whole ? errors_.bytes() : blocks_bytes;
-    if (read_back_bytes_ == 0) return;  // a single block at full resolution
     constexpr GLbitfield kMapping = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    read_back_ = gl::Buffer(device, "multi-context: read-back", read_back_bytes_,
-                            kMapping | GL_CLIENT_STORAGE_BIT);
-    mapped_ = glMapNamedBufferRange(read_back_.name(), 0, GLsizeiptr(read_back_bytes_), kMapping);
+    read_back_ =
+        gl::Buffer(device, "multi-context: read-back", bytes, kMapping | GL_CLIENT_STORAGE_BIT);
+    mapped_ = glMapNamedBufferRange(read_back_.name(), 0, GLsizeiptr(bytes), kMapping);
     if (mapped_ == nullptr) {
         throw EnvironmentError(
             fmt::format("multi-context: the driver maps no buffer of {} bytes "
                         "for reading",
-                        read_back_bytes_));
+                        bytes));
     }
 }
 
-void ErrorsPass::run(const Camera& camera, BlockErrors& errors) {
+void ErrorsPass::run(const Camera& camera, BlockErrors& errors, const BetweenParts& between) {
     begin(camera);
     for (int level = 1; level <= layout_.n(); ++level) evaluate_level(level);
-    start_read_back();
-    finish_read_back(errors);
+    read_back(errors, between);
 }
 
 void ErrorsPass::begin(const Camera& camera) {
@@ -90,54 +100,126 @@ void ErrorsPass::evaluate_level(int level) {
         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // the next level reads what this one wrote
 }
 
-void ErrorsPass::gather_blocks() {
+void ErrorsPass::read_back(BlockErrors& errors, const BetweenParts& between) {
+    errors.layout = layout_;
+    errors.delta = settings_.delta;
+    errors.read_back_bytes = 0;
+    if (!read_back_) return;
+    switch (settings_.read_back) {
+        case ReadBack::whole: read_whole(errors, between); break;
+        case ReadBack::blocks: read_blocks(errors, between); break;
+        case ReadBack::tree: read_tree(errors); break;
+    }
+}
+
+void ErrorsPass::wait_until_arrived() {
+    gl::Fence(device_).wait();
+}
+
+void ErrorsPass::read_whole(BlockErrors& errors, const BetweenParts& between) {
+    const int samples = layout_.samples();
+    const std::size_t texel = settings_.bytes ? 1 : sizeof(float);
+    const std::size_t line = texel * std::size_t(samples);
+    const auto bring = [&](auto& destination) {
+        destination.resize(std::size_t(samples) * std::size_t(samples));
+        auto* const bytes = reinterpret_cast<std::byte*>(destination.data());
+        for (int part = 0; part < settings_.parts; ++part) {
+            const int first = int(std::int64_t(samples) * part / settings_.parts);
+            const int rows = int(std::int64_t(samples) * (part + 1) / settings_.parts) - first;
+            if (part > 0) between();
+            if (rows == 0) continue;
+            glPixelStorei(GL_PACK_ALIGNMENT, 1);
+            glBindBuffer(GL_PIXEL_PACK_BUFFER, read_back_.name());
+            glGetTextureSubImage(errors_.name(), 0, 0, first, 0, samples, rows, 1,
+                                 settings_.bytes ? GL_RED_INTEGER : GL_RED,
+                                 settings_.bytes ? GL_UNSIGNED_BYTE : GL_FLOAT,
+                                 GLsizei(read_back_.bytes()), nullptr);
+            glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+            wait_until_arrived();
+            std::memcpy(bytes + line * std::size_t(first), mapped_, line * std::size_t(rows));
+        }
+        errors.read_back_bytes = line * std::size_t(samples);
+    };
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    if (settings_.bytes) {
+        bring(errors.codes);
+    } else {
+        bring(errors.texels);
+    }
+}
+
+void ErrorsPass::start_gathering(int lod) {
     glBindImageTexture(0, errors_.name(), 0, GL_FALSE, 0, GL_READ_ONLY, errors_.internal_format());
     block_errors_.bind_storage(kBlockErrorsBinding);
     block_program_.set("block_cells", layout_.block_cells());
     block_program_.set("delta", settings_.delta);
+    block_program_.set("lod", lod);
+}
+
+void ErrorsPass::gather_every_block() {
     for (int lod = 1; lod <= layout_.coarsest(); ++lod) {
-        block_program_.set("lod", lod);
+        start_gathering(lod);
         block_program_.set("first_block", int(layout_.first(lod)));
         const auto blocks = GLuint(layout_.blocks_along(lod));
         device_.dispatch_compute(block_program_, blocks, blocks, 1);
     }
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void ErrorsPass::start_read_back() {
-    if (read_back_bytes_ == 0) return;
-    if (settings_.whole) {
-        glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
-        glPixelStorei(GL_PACK_ALIGNMENT, 1);
-        glBindBuffer(GL_PIXEL_PACK_BUFFER, read_back_.name());
-        glGetTextureImage(errors_.name(), 0, settings_.bytes ? GL_RED_INTEGER : GL_RED,
-                          settings_.bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, GLsizei(read_back_bytes_),
-                          nullptr);
-        glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    } else {
-        gather_blocks();
-        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        glCopyNamedBufferSubData(block_errors_.name(), read_back_.name(), 0, 0,
-                                 GLsizeiptr(read_back_bytes_));
+void ErrorsPass::read_blocks(BlockErrors& errors, const BetweenParts& between) {
+    gather_every_block();
+    errors.blocks.resize(layout_.count());
+    for (int part = 0; part < settings_.parts; ++part) {
+        const std::size_t first =
+            layout_.count() * std::size_t(part) / std::size_t(settings_.parts);
+        const std::size_t end =
+            layout_.count() * std::size_t(part + 1) / std::size_t(settings_.parts);
+        if (part > 0) between();
+        if (first == end) continue;
+        const std::size_t bytes = (end - first) * sizeof(float);
+        glCopyNamedBufferSubData(block_errors_.name(), read_back_.name(),
+                                 GLintptr(first * sizeof(float)), 0, GLsizeiptr(bytes));
+        wait_until_arrived();
+        std::memcpy(errors.blocks.data() + first, mapped_, bytes);
     }
-    arrived_ = gl::Fence(device_);
+    errors.read_back_bytes = layout_.count() * sizeof(float);
 }
 
-void ErrorsPass::finish_read_back(BlockErrors& errors) {
-    errors.layout = layout_;
-    errors.delta = settings_.delta;
-    if (read_back_bytes_ == 0) return;
-    arrived_.wait();
-    arrived_ = {};
-    const auto copy_to = [&](auto& destination) {
-        destination.resize(read_back_bytes_ / sizeof destination[0]);
-        std::memcpy(destination.data(), mapped_, read_back_bytes_);
-    };
-    if (!settings_.whole) {
-        copy_to(errors.blocks);
-    } else if (settings_.bytes) {
-        copy_to(errors.codes);
-    } else {
-        copy_to(errors.texels);
+void ErrorsPass::gather(int lod, std::span<const glm::ivec2> blocks) {
+    constexpr std::size_t kMostAcross = 32768;  // work groups; OpenGL allows 65535 at least
+    const std::size_t across = std::min(blocks.size(), kMostAcross);
+    listed_blocks_.write(blocks);
+    start_gathering(lod);
+    listed_blocks_.bind_storage(kListedBlocksBinding);
+    block_program_.set("block_count", int(blocks.size()));
+    device_.dispatch_compute(block_program_, GLuint(across),
+                             GLuint((blocks.size() + across - 1) / across), 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glCopyNamedBufferSubData(block_errors_.name(), read_back_.name(), 0, 0,
+                             GLsizeiptr(blocks.size() * sizeof(float)));
+    wait_until_arrived();
+}
+
+// Breadth first, so that the round trips to the GPU are as many as LODs. Nothing is left out for
+// being out of view: the errors outlive the camera that they are for.
+void ErrorsPass::read_tree(BlockErrors& errors) {
+    errors.blocks.assign(layout_.count(), kUnbounded);
+    std::vector<glm::ivec2> blocks = {{0, 0}};  // column, row
+    std::vector<glm::ivec2> children;
+    for (int lod = layout_.coarsest(); lod >= 1 && !blocks.empty(); --lod) {
+        gather(lod, blocks);
+        errors.read_back_bytes += blocks.size() * sizeof(float);
+        const auto* const found = static_cast<const float*>(mapped_);
+        children.clear();
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            const glm::ivec2 block = blocks[i];
+            errors.blocks[layout_.index(lod, block.y, block.x)] = found[i];
+            if (found[i] <= settings_.delta) continue;
+            for (const glm::ivec2 quadrant : {glm::ivec2{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+                children.push_back(2 * block + quadrant);
+            }
+        }
+        std::swap(blocks, children);
     }
 }
 

@@ -21,6 +21,17 @@
 namespace lodbench::multi_context {
 namespace {
 
+ReadBack read_back_from(const std::string& choice) {
+    if (choice == "whole") return ReadBack::whole;
+    return choice == "blocks" ? ReadBack::blocks : ReadBack::tree;
+}
+
+bool same(const Camera& a, const Camera& b) {
+    return a.position == b.position && a.orientation == b.orientation &&
+           a.vertical_fov == b.vertical_fov && a.viewport == b.viewport &&
+           a.near_plane == b.near_plane;
+}
+
 class MultiContext final : public Method {
 public:
     explicit MultiContext(const Params& params)
@@ -31,7 +42,15 @@ public:
           errors_settings_{.k = std::stoi(params.choice("k")),
                            .delta = delta_,
                            .bytes = params.choice("errors") == "byte",
-                           .whole = params.choice("readback") == "whole"} {}
+                           .read_back = read_back_from(params.choice("readback")),
+                           .parts = int(params.integer("spread"))} {
+        if (errors_settings_.read_back == ReadBack::tree && errors_settings_.parts > 1) {
+            throw InputError(
+                "spread > 1 and readback = \"tree\" exclude each other: a tree comes back as far "
+                "as "
+                "it is split; use readback = \"whole\" or \"blocks\", or leave spread at 1");
+        }
+    }
 
     void prepare(const Terrain& terrain, gl::Device& device) override {
         terrain_ = &terrain;
@@ -87,7 +106,12 @@ public:
         // A moment that is selected again was a warm-up: no time passed, so none was lost.
         if (asked_ > 0 && !settled_ && clock.frame != frame_) count_unsettled();
         frame_ = clock.frame;
-        asked_ = background.ask(camera);
+        background.tick();
+        // "As the viewpoint changes": errors depend on the camera and on delta, which is fixed.
+        if (asked_ == 0 || !same(camera, asked_for_)) {
+            asked_ = background.ask(camera);
+            asked_for_ = camera;
+        }
         settled_ = !asynchronous_;
         if (taken_ == 0 || !asynchronous_) background.wait_for(asked_);
         choose();
@@ -128,7 +152,8 @@ public:
                 {"staleness_frames_unsettled_max_so_far", double(unsettled_most_)},
                 {"errors_pass_ms", 1e3 * statistics.work_s},
                 {"errors_passes_per_second", statistics.per_second},
-                {"readback_bytes", double(activity_->read_back_bytes())},
+                {"errors_passes_so_far", double(statistics.done)},
+                {"readback_bytes", double(activity_->background().result().read_back_bytes)},
                 {"geometry_bytes", double(mesh_vertices_.bytes() + mesh_indices_.bytes())}};
     }
 
@@ -189,6 +214,7 @@ private:
     gl::VertexArray vertices_;
     GLsizei index_count_ = 0;
     Camera camera_;
+    Camera asked_for_;        ///< of the request `asked_`
     std::int64_t frame_ = 0;  ///< of the last selection
     Selection selection_;
     std::vector<glm::ivec4> instances_of_;  ///< what blocks.vert calls `block`, one a block
@@ -205,9 +231,12 @@ constexpr ParamSpec kParams[] = {
     boolean_param("async", true,
                   "draws with the newest errors there are, as in the paper; false: waits for this "
                   "frame's errors"),
-    choice_param("readback", "whole", "whole|blocks",
-                 "what comes back from the GPU: the paper's whole errors texture, or each block's "
-                 "greatest error"),
+    choice_param("readback", "whole", "whole|blocks|tree",
+                 "what comes back from the GPU: the paper's whole errors texture, each block's "
+                 "greatest error, or those from the root down only where a block is split"),
+    integer_param("spread", 1, 1, 64,
+                  "frames over which a read-back is spread, as the paper proposes; with whole and "
+                  "blocks"),
     choice_param("errors", "float", "float|byte",
                  "texels of the errors texture; byte, proposed by the paper, rounds up"),
     boolean_param("batch", false, "one instanced draw call instead of the paper's one a block"),
@@ -220,7 +249,7 @@ constexpr MethodDescriptor kMethods[] = {
      .title = "Yusuf et al.: blocks of one mesh, by errors that a second context computes",
      .citation = "Mohammad A. Yusuf, Mostafa G. M. Mostafa, Taha I. Elarif (2014): A "
                  "Multi-threaded Multi-context GPU Methodology for Real-time Terrain Rendering",
-     .version = "1",
+     .version = "2",
      .capabilities = kAsynchronous | kSkirts,
      .gl_extensions = nullptr,
      .params = kParams,

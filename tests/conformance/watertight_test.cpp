@@ -72,6 +72,8 @@ INSTANTIATE_TEST_SUITE_P(
         {"static-patches", 65, {"ridged_oblong"}, {4}},
         {"hybrid-patches", 65, {"ridged"}, {4}, "--set error=accumulated --set metric=planar"},
         {"lindstrom", 0, {"puget"}, {16}},
+        {"lindstrom", 0, {"step", "ridged_odd", "ridged_3x5"}, {16}, "--set morph=2"},
+        {"lindstrom", 0, {"ridged", "puget"}, {16}, "--set morph=4 --set metric=planar"},
         {"hybrid-patches", 65, {"puget"}, {16}},
         {"sltq-cpu", 0, kMost, {1, 16}},
         {"sltq-cpu", 0, {"ridged_oblong", "puget"}, {16}},

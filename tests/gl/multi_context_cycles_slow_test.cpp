@@ -75,6 +75,7 @@ TEST(MultiContextCycles, a_thousand_leave_no_thread_context_object_or_byte) {
         give_contexts();
         const run::Settings settings = {{"async", random() % 4 == 0 ? "false" : "true"},
                                         {"readback", random() % 2 == 0 ? "whole" : "blocks"},
+                                        {"spread", random() % 3 == 0 ? "8" : "1"},
                                         {"batch", random() % 2 == 0 ? "true" : "false"},
                                         {"errors", random() % 3 == 0 ? "byte" : "float"},
                                         {"k", random() % 2 == 0 ? "17" : "33"}};

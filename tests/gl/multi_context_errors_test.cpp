@@ -19,6 +19,7 @@ using multi_context::ErrorsPass;
 using multi_context::ErrorsSettings;
 using multi_context::kUnbounded;
 using multi_context::Layout;
+using multi_context::ReadBack;
 
 std::shared_ptr<const terrain::HeightField> rough(int rows, int columns, unsigned seed) {
     TerrainInfo info;
@@ -47,7 +48,7 @@ public:
         return errors;
     }
     [[nodiscard]] std::vector<float> texture() const { return pass_.read_texture(); }
-    [[nodiscard]] const ErrorsPass& pass() const { return pass_; }
+    [[nodiscard]] ErrorsPass& pass() { return pass_; }
 
 private:
     gl::Texture make_heights(const Terrain& terrain) {
@@ -191,17 +192,23 @@ TEST(MultiContextErrors, of_blocks_are_the_same_from_the_gpus_maxima_and_from_th
         for (const bool bytes : {false, true}) {
             const auto terrain = rough(150, 129, 9);
             GlTest gl;
-            Errors blocks(gl, *terrain, {.k = k, .delta = 40, .bytes = bytes, .whole = false});
-            Errors whole(gl, *terrain, {.k = k, .delta = 40, .bytes = bytes, .whole = true});
+            // In one part and in several, of which some may be empty.
+            const int parts = k == 17 ? 1 : 5;
+            Errors blocks(gl, *terrain, {.k = k, .delta = 40, .bytes = bytes, .parts = parts});
+            Errors whole(gl, *terrain,
+                         {.k = k,
+                          .delta = 40,
+                          .bytes = bytes,
+                          .read_back = ReadBack::whole,
+                          .parts = parts});
             const Layout& layout = blocks.pass().layout();
-            EXPECT_EQ(blocks.pass().read_back_bytes(), layout.count() * 4);
-            EXPECT_EQ(
-                whole.pass().read_back_bytes(),
-                std::size_t(layout.samples()) * std::size_t(layout.samples()) * (bytes ? 1U : 4U));
             for (int i = 0; i < 5; ++i) {
                 const Camera camera = random_camera(terrain->info(), random);
                 const BlockErrors a = blocks.run(camera);
                 const BlockErrors b = whole.run(camera);
+                EXPECT_EQ(a.read_back_bytes, layout.count() * 4);
+                EXPECT_EQ(b.read_back_bytes, std::size_t(layout.samples()) *
+                                                 std::size_t(layout.samples()) * (bytes ? 1U : 4U));
                 const ReferenceErrors reference(*terrain, layout, camera);
                 for (int lod = 1; lod <= layout.coarsest(); ++lod) {
                     for (int row = 0; row < layout.blocks_along(lod); ++row) {
@@ -218,6 +225,53 @@ TEST(MultiContextErrors, of_blocks_are_the_same_from_the_gpus_maxima_and_from_th
                 }
             }
         }
+    }
+}
+
+TEST(MultiContextErrors, of_a_tree_are_those_of_all_blocks_as_far_as_it_is_split_and_no_more) {
+    std::mt19937 random(8);
+    const auto terrain = hills(257, 200);
+    for (const bool bytes : {false, true}) {
+        GlTest gl;
+        const float delta = 6;
+        Errors all(gl, *terrain, {.k = 9, .delta = delta, .bytes = bytes});
+        Errors tree(gl, *terrain,
+                    {.k = 9, .delta = delta, .bytes = bytes, .read_back = ReadBack::tree});
+        const Layout& layout = all.pass().layout();
+        std::size_t fetched = 0, left_out = 0;
+        for (int i = 0; i < 12; ++i) {
+            const Camera camera = random_camera(terrain->info(), random);
+            const BlockErrors expected = all.run(camera);
+            const BlockErrors found = tree.run(camera);
+            std::size_t blocks = 0;
+            for (int lod = 1; lod <= layout.coarsest(); ++lod) {
+                for (int row = 0; row < layout.blocks_along(lod); ++row) {
+                    for (int column = 0; column < layout.blocks_along(lod); ++column) {
+                        const bool split = lod == layout.coarsest() ||
+                                           expected.at(lod + 1, row / 2, column / 2) > delta;
+                        ASSERT_EQ(found.at(lod, row, column), split ? expected.at(lod, row, column)
+                                                                    : multi_context::kUnbounded);
+                        ++(split ? fetched : left_out);
+                        blocks += split;
+                    }
+                }
+            }
+            EXPECT_EQ(found.read_back_bytes, 4 * blocks);
+        }
+        EXPECT_GT(fetched, 100U);
+        EXPECT_GT(left_out, 100U);
+    }
+}
+
+TEST(MultiContextErrors, come_back_in_as_many_parts_as_asked_for) {
+    const auto terrain = rough(65, 65, 4);
+    for (const ReadBack read_back : {ReadBack::whole, ReadBack::blocks}) {
+        GlTest gl;
+        Errors errors(gl, *terrain, {.k = 3, .read_back = read_back, .parts = 4});
+        int between = 0;
+        BlockErrors found;
+        errors.pass().run(camera_at({0, 0, 2000}, 30, -10), found, [&] { ++between; });
+        EXPECT_EQ(between, 3);
     }
 }
 
@@ -253,8 +307,7 @@ TEST(MultiContextErrors, of_a_terrain_of_one_block_need_no_read_back) {
     GlTest gl;
     Errors errors(gl, *terrain, {.k = 33});
     EXPECT_EQ(errors.pass().layout().coarsest(), 0);
-    EXPECT_EQ(errors.pass().read_back_bytes(), 0U);
-    (void)errors.run(camera_at({0, 0, 2000}, 30, -10));
+    EXPECT_EQ(errors.run(camera_at({0, 0, 2000}, 30, -10)).read_back_bytes, 0U);
 }
 
 }  // namespace

@@ -77,6 +77,9 @@ TEST(MultiContext, draws_what_the_errors_in_double_demand_in_every_variant) {
     const std::vector<Settings> variants = {
         {},
         {{"readback", "blocks"}},
+        {{"readback", "tree"}},
+        {{"spread", "7"}},
+        {{"readback", "blocks"}, {"spread", "64"}},
         {{"batch", "true"}},
         {{"async", "false"}},
         {{"readback", "blocks"}, {"batch", "true"}, {"async", "false"}}};
@@ -87,6 +90,7 @@ TEST(MultiContext, draws_what_the_errors_in_double_demand_in_every_variant) {
             const Camera camera = lowered(info, 0.1 * i, 40.0 * i, -5.0 * i);
             flight.select(camera);
             flight.stage().settle();
+            EXPECT_EQ(flight.counter("errors_passes_so_far"), i + 1);
             const auto surface = flight.stage().capture();
             const Blocks found = blocks_of(surface, info, 17);
             EXPECT_EQ(found, expected_blocks(*terrain, 17, 7.3, camera, camera)) << "camera " << i;
@@ -112,6 +116,7 @@ TEST(MultiContext, selects_as_with_floats_where_errors_are_bytes) {
     EXPECT_GT(blocks.size(), 20U);
     EXPECT_EQ(selected("whole", "byte"), blocks);
     EXPECT_EQ(selected("blocks", "byte"), blocks);
+    EXPECT_EQ(selected("tree", "byte"), blocks);
 }
 
 TEST(MultiContext, needs_37644_bytes_for_geometry_whatever_the_terrain) {
@@ -183,19 +188,111 @@ TEST(MultiContext, counts_how_stale_the_frames_of_the_flight_were_and_no_warm_up
     select(0);
     flight.stage().pause_background();
     for (int warmup = 1; warmup < 4; ++warmup) select(0);
-    EXPECT_EQ(flight.counter("staleness_frames"), 3);
+    EXPECT_EQ(flight.counter("staleness_frames"), 0) << "of the camera that they are for";
     EXPECT_EQ(flight.counter("staleness_frames_unsettled_max_so_far"), 0);
-    for (int frame = 0; frame < 4; ++frame) select(frame);  // 4, 5, 6, 7 frames behind
+    for (int frame = 1; frame < 5; ++frame) select(frame);  // 1, 2, 3, 4 cameras behind
+    EXPECT_EQ(flight.counter("staleness_frames"), 4);
     select(0);  // what follows warms up for the lockstep replay
     select(0);
-    EXPECT_EQ(flight.counter("staleness_frames"), 9);
+    EXPECT_EQ(flight.counter("staleness_frames"), 5);
     flight.stage().resume_background();
     for (int frame = 0; frame < 4; ++frame) {
         select(frame);
         flight.stage().settle();
         EXPECT_EQ(flight.counter("staleness_frames"), 0);
-        EXPECT_EQ(flight.counter("staleness_frames_unsettled_mean_so_far"), 5.5);
-        EXPECT_EQ(flight.counter("staleness_frames_unsettled_max_so_far"), 7);
+        EXPECT_EQ(flight.counter("staleness_frames_unsettled_mean_so_far"), 2);  // 0 + 1 + ... + 4
+        EXPECT_EQ(flight.counter("staleness_frames_unsettled_max_so_far"), 4);
+    }
+}
+
+/// What two lockstep replays are compared by.
+std::string depth_hash(Flight& flight) {
+    flight.stage().draw_picture();
+    return flight.stage().depth_hash();
+}
+
+TEST(MultiContext,
+     standing_still_makes_one_pass_and_the_next_movement_draws_as_if_there_were_none) {
+    const auto terrain = hills(257, 257);
+    const std::vector<int> path = {0, 0, 0, 0, 1, 2, 2, 2, 1, 1, 3};  // cameras: four movements
+    const auto camera = [&](int i) {
+        return lowered(terrain->info(), 0.2 + 0.1 * i, 30 + 10 * i, -15);
+    };
+    std::vector<std::string> expected;  // of flights that see one camera once
+    for (int i = 0; i < 4; ++i) {
+        Flight fresh(terrain, "multi_context", "multi-context", with(7.3));
+        fresh.select(camera(i));
+        fresh.stage().settle();
+        expected.push_back(depth_hash(fresh));
+    }
+    EXPECT_EQ(std::set(expected.begin(), expected.end()).size(), 4U);
+    for (const char* readback : {"whole", "blocks", "tree"}) {
+        Flight flight(terrain, "multi_context", "multi-context",
+                      with(7.3, {{"readback", readback}}));
+        for (const int i : path) {
+            flight.select(camera(i));
+            flight.stage().settle();
+            EXPECT_EQ(depth_hash(flight), expected[std::size_t(i)]) << "camera " << i;
+        }
+        EXPECT_EQ(flight.counter("errors_passes_so_far"), 5);
+    }
+}
+
+TEST(MultiContext, asks_for_new_errors_where_anything_of_the_camera_changes) {
+    const auto terrain = hills(129, 129);
+    Flight flight(terrain, "multi_context", "multi-context", with(7.3));
+    Camera camera = lowered(terrain->info(), 0.4, 30, -20);
+    int passes = 0;
+    const auto expect_a_pass = [&](const char* what) {
+        for (int i = 0; i < 3; ++i) {
+            flight.select(camera);
+            flight.stage().settle();
+        }
+        EXPECT_EQ(flight.counter("errors_passes_so_far"), ++passes) << what;
+    };
+    expect_a_pass("the first");
+    camera.position.z += 1e-9 * camera.position.z;
+    expect_a_pass("position");
+    camera.orientation = camera.orientation * glm::angleAxis(1e-6, glm::dvec3(0, 0, 1));
+    expect_a_pass("orientation");
+    camera.vertical_fov *= 1.001;
+    expect_a_pass("lens");
+    camera.near_plane *= 2;
+    expect_a_pass("near plane");
+    camera.viewport.height += 1;
+    expect_a_pass("viewport");
+}
+
+// Three parts wait for a frame each: the errors of a new camera take at least as many to arrive.
+TEST(MultiContext, a_read_back_that_is_spread_over_four_frames_arrives_after_three_more) {
+    const auto terrain = hills(129, 129);
+    for (const char* readback : {"whole", "blocks"}) {
+        Flight flight(terrain, "multi_context", "multi-context",
+                      with(7.3, {{"spread", "4"}, {"readback", readback}}));
+        flight.select(lowered(terrain->info(), 0.2, 30, -20));
+        EXPECT_EQ(flight.counter("staleness_frames"), 0) << "waits where there is nothing yet";
+        const Camera next = lowered(terrain->info(), 0.6, 60, -10);
+        flight.select(next);
+        int frames = 0;
+        while (flight.counter("staleness_frames") > 0) {
+            ASSERT_LT(frames, 1000);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            flight.select(next);
+            ++frames;
+        }
+        EXPECT_GE(frames, 3) << readback;
+        EXPECT_EQ(flight.counter("errors_passes_so_far"), 2);
+    }
+}
+
+TEST(MultiContext, a_tree_is_not_spread) {
+    try {
+        Flight flight(hills(65, 65), "multi_context", "multi-context",
+                      {{"readback", "tree"}, {"spread", "2"}});
+        FAIL() << "made";
+    } catch (const std::exception& failure) {
+        EXPECT_NE(std::string(failure.what()).find("leave spread at 1"), std::string::npos)
+            << failure.what();
     }
 }
 

@@ -93,15 +93,19 @@ public:
 
     [[nodiscard]] std::vector<test::Triangle> triangles(const std::vector<Drawn>& drawn) const {
         std::vector<test::Triangle> all;
-        for (const Drawn& patch : drawn) append(patch.patch, patch.strip, all);
+        for (const Drawn& patch : drawn) {
+            const auto more = test::expand(vertices_of(patch.patch, patch.strip));
+            all.insert(all.end(), more.begin(), more.end());
+        }
         return all;
     }
-    void append(std::uint32_t patch, std::span<const std::uint16_t> strip,
-                std::vector<test::Triangle>& triangles) const {
+    /// Indices in the grid of vertices that are named within the patch.
+    [[nodiscard]] std::vector<std::uint32_t> vertices_of(
+        std::uint32_t patch, std::span<const std::uint16_t> names) const {
         const Triangle& t = hierarchy_.patch(patch).triangle;
         const int segments = hierarchy_.segments();
         std::vector<std::uint32_t> vertices;
-        for (const int name : strip) {
+        for (const int name : names) {
             const int a = name / (segments + 1);
             const int b = name % (segments + 1);
             const int row = a * (t.left.row - t.apex.row) + b * (t.right.row - t.apex.row);
@@ -112,8 +116,7 @@ public:
             vertices.push_back(std::uint32_t(refiner_.grid().index(
                 {t.apex.row + row / segments, t.apex.column + column / segments})));
         }
-        const std::vector<test::Triangle> more = test::expand(vertices);
-        triangles.insert(triangles.end(), more.begin(), more.end());
+        return vertices;
     }
     [[nodiscard]] Refinement from_scratch(std::uint32_t patch, const Camera& camera) const {
         Refinement result;

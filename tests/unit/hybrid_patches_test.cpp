@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <set>
+
 #include "hybrid_flight.h"
+#include "hybrid_patches/patch_triangles.h"
 
 namespace lodbench::hybrid_patches {
 namespace {
@@ -37,17 +41,21 @@ TEST(HybridPatches, regular_patches_of_every_cut_fit_together) {
                 for (const RefinerOptions& options : all_options(tau)) {
                     const Flight flight(*terrain, options, segments, 0);
                     const PatchHierarchy& patches = flight.hierarchy();
-                    std::vector<std::uint16_t> strip;
-                    EveryVertex every;
-                    PatchStripBuilder<EveryVertex>(strip).build(patches.patch(0).triangle, segments,
-                                                                patches.levels(), every);
+                    const std::vector<std::uint16_t> regular =
+                        regular_triangles(patches.patch(0).triangle, segments, patches.levels());
+                    ASSERT_EQ(regular.size(), std::size_t(3) << patches.levels());
                     for (int frame = 0; frame < 3; ++frame) {
                         const Camera camera = test::random_camera(terrain->info(), random);
                         std::vector<std::uint32_t> cut;
                         patches.select(flight.refiner().view(camera), options.metric, false, cut);
                         std::vector<test::Triangle> triangles;
                         for (const std::uint32_t patch : cut) {
-                            flight.append(patch, strip, triangles);
+                            const std::vector<std::uint32_t> vertices =
+                                flight.vertices_of(patch, regular);
+                            for (std::size_t i = 0; i < vertices.size(); i += 3) {
+                                triangles.push_back(
+                                    {vertices[i], vertices[i + 1], vertices[i + 2]});
+                            }
                         }
                         const Mesh mesh(flight.refiner().grid().size(), std::move(triangles));
                         ASSERT_EQ(test::defect_of(mesh), "")
@@ -59,6 +67,39 @@ TEST(HybridPatches, regular_patches_of_every_cut_fit_together) {
         }
     }
     EXPECT_GT(sizes.size(), 20U) << "the cameras must make cuts of many sizes";
+}
+
+/// All that a patch can be split at is.
+struct EveryVertex {
+    [[nodiscard]] static bool active(int, int) { return true; }
+};
+
+// What is drawn at full refinement and what is drawn without refinement are the same surface.
+TEST(HybridPatches, regular_triangles_are_those_of_a_strip_refined_everywhere_without_its_swaps) {
+    const auto terrain = test::random_terrain(65, 65, 5);
+    for (const int segments : {2, 8, 64}) {
+        const Flight flight(*terrain, {1, ErrorKind::midpoint, Metric::euclidean, false}, segments,
+                            0);
+        const PatchHierarchy& patches = flight.hierarchy();
+        const Triangle& patch = patches.patch(1).triangle;
+        std::vector<std::uint16_t> strip;
+        EveryVertex every;
+        PatchStripBuilder<EveryVertex>(strip).build(patch, segments, patches.levels(), every);
+        const auto rotated = [](std::array<std::uint32_t, 3> t) {
+            std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+            return t;
+        };
+        std::multiset<std::array<std::uint32_t, 3>> of_strip, regular;
+        for (const test::Triangle& t :
+             test::expand(std::vector<std::uint32_t>(strip.begin(), strip.end()))) {
+            of_strip.insert(rotated({t.vertices[0], t.vertices[1], t.vertices[2]}));
+        }
+        const auto names = regular_triangles(patch, segments, patches.levels());
+        for (std::size_t i = 0; i < names.size(); i += 3) {
+            regular.insert(rotated({names[i], names[i + 1], names[i + 2]}));
+        }
+        EXPECT_EQ(regular, of_strip) << segments << " segments";
+    }
 }
 
 TEST(HybridPatches, have_nested_criteria_that_cover_what_a_patch_lacks) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "leb_test_terrain.h"
 
@@ -69,6 +70,39 @@ inline std::string defect_of(const Mesh& mesh) {
         }
     }
     return "";
+}
+
+/// Height of the mesh at every sample of its own grid; `height_of` gives that of a vertex, by its
+/// index in the grid.
+template <typename HeightOf>
+std::vector<double> surface_of(const Mesh& mesh, const HeightOf& height_of) {
+    std::vector<double> heights(std::size_t(mesh.size) * std::size_t(mesh.size));
+    for (const Triangle& t : mesh.triangles) {
+        const Sample s[3] = {mesh.sample(t.vertices[0]), mesh.sample(t.vertices[1]),
+                             mesh.sample(t.vertices[2])};
+        const auto turn = [](Sample a, Sample b, Sample c) {
+            return double(b.row - a.row) * (c.column - a.column) -
+                   double(b.column - a.column) * (c.row - a.row);
+        };
+        const double area = turn(s[0], s[1], s[2]);
+        const auto [north, south] = std::minmax({s[0].row, s[1].row, s[2].row});
+        const auto [west, east] = std::minmax({s[0].column, s[1].column, s[2].column});
+        for (int row = north; row <= south; ++row) {
+            for (int column = west; column <= east; ++column) {
+                const Sample p{row, column};
+                const double w[3] = {turn(p, s[1], s[2]) / area, turn(s[0], p, s[2]) / area,
+                                     turn(s[0], s[1], p) / area};
+                if (std::min({w[0], w[1], w[2]}) < 0) continue;
+                double& height = heights[std::size_t(row * mesh.size + column)];
+                height = 0;
+                for (int i = 0; i < 3; ++i) height += w[i] * double(height_of(t.vertices[i]));
+            }
+        }
+    }
+    return heights;
+}
+inline std::vector<double> surface_of(const Mesh& mesh, const LebGrid& grid) {
+    return surface_of(mesh, [&](std::uint32_t v) { return grid.vertices()[v].height; });
 }
 
 /// The vertices that the criterion calls active, found by asking each vertex on its own, all planes

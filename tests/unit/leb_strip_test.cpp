@@ -13,6 +13,7 @@ namespace {
 using test::active_set;
 using test::defect_of;
 using test::Mesh;
+using test::surface_of;
 using test::Triangle;
 
 std::vector<RefinerOptions> all_options(double tau) {
@@ -130,33 +131,6 @@ TEST(LebStrip, inside_a_sphere_is_never_coarse) {
     Camera camera;
     camera.position = {terrain->info().position(32, 0), side.height + 0.5 * side.radius};
     EXPECT_GT(refiner.refine(camera).triangle_count(), 4U);
-}
-
-/// Height of the mesh at every sample of its own grid.
-std::vector<double> surface_of(const Mesh& mesh, const LebGrid& grid) {
-    std::vector<double> heights(grid.vertex_count());
-    for (const Triangle& t : mesh.triangles) {
-        const Sample s[3] = {mesh.sample(t.vertices[0]), mesh.sample(t.vertices[1]),
-                             mesh.sample(t.vertices[2])};
-        const auto turn = [](Sample a, Sample b, Sample c) {
-            return double(b.row - a.row) * (c.column - a.column) -
-                   double(b.column - a.column) * (c.row - a.row);
-        };
-        const double area = turn(s[0], s[1], s[2]);
-        const auto [north, south] = std::minmax({s[0].row, s[1].row, s[2].row});
-        const auto [west, east] = std::minmax({s[0].column, s[1].column, s[2].column});
-        for (int row = north; row <= south; ++row) {
-            for (int column = west; column <= east; ++column) {
-                const Sample p{row, column};
-                const double w[3] = {turn(p, s[1], s[2]) / area, turn(s[0], p, s[2]) / area,
-                                     turn(s[0], s[1], p) / area};
-                if (std::min({w[0], w[1], w[2]}) < 0) continue;
-                heights[grid.index(p)] = w[0] * grid.at(s[0]).height + w[1] * grid.at(s[1]).height +
-                                         w[2] * grid.at(s[2]).height;
-            }
-        }
-    }
-    return heights;
 }
 
 struct UniformTolerance {

@@ -171,6 +171,73 @@ TEST(Background, what_is_under_way_is_completed_by_the_pause_and_pays_for_it_aft
     EXPECT_GE(owed, milliseconds(10)) << "some of the work was done in the pause";
 }
 
+/// Work in three parts, with a tick to wait for before the second and the third.
+class InParts {
+public:
+    InParts()
+        : background_([this]() -> Doubler::Work {
+              return [this](const int& request, int& result) {
+                  for (int part = 1; part <= 3; ++part) {
+                      if (part > 1) background_.wait_for_tick();
+                      const std::lock_guard lock(mutex_);
+                      ++parts_;
+                      changed_.notify_all();
+                  }
+                  result = 2 * request;
+              };
+          }) {}
+    Doubler& background() { return background_; }
+    void wait_for_parts(int count) {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return parts_ >= count; });
+    }
+    [[nodiscard]] int parts() {
+        const std::lock_guard lock(mutex_);
+        return parts_;
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    int parts_ = 0;
+    Doubler background_;  // last: its thread uses the others
+};
+
+TEST(Background, work_that_is_spread_over_frames_goes_on_by_one_part_a_tick) {
+    InParts work;
+    work.background().ask(4);
+    work.wait_for_parts(1);
+    std::this_thread::sleep_for(milliseconds(20));
+    EXPECT_EQ(work.parts(), 1) << "nobody ticked";
+    for (int part = 2; part <= 3; ++part) {
+        EXPECT_EQ(work.background().take(), 0U);
+        // A tick that comes before the thread waits is the last frame's: so until one is seen.
+        while (work.parts() < part) {
+            work.background().tick();
+            std::this_thread::sleep_for(milliseconds(1));
+        }
+        EXPECT_LE(work.parts(), 3);
+    }
+    while (work.background().take() == 0) std::this_thread::sleep_for(milliseconds(1));
+    EXPECT_EQ(work.background().result(), 8);
+}
+
+TEST(Background, spread_work_hurries_where_somebody_waits_pauses_or_ends) {
+    {
+        InParts work;
+        work.background().ask(4);
+        work.background().wait_for(1);
+        EXPECT_EQ(work.parts(), 3);
+        work.background().ask(5);
+        work.wait_for_parts(4);
+        work.background().pause();  // returns: the parts that are left need no tick
+        EXPECT_EQ(work.parts(), 6);
+        work.background().resume();
+        work.background().ask(6);
+        work.wait_for_parts(7);
+    }  // and so does the end
+}
+
 TEST(Background, ends_in_every_state) {
     Gate gate;
     { const Doubler idle(at_once()); }
