@@ -26,7 +26,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TESTS = ["error_pool_test", "image_difference_test", "capture_clip_test", "sample_errors_test", "truth_test",
          "reference_sight_test", "reference_terrain_test", "drawn_surface_test", "drawn_surface_rays_test",
          "drawn_surface_skirts_test", "fault_table_test", "fault_table_cover_test", "greedy_triangulation_test",
-         "needed_tiles_test"]
+         "needed_tiles_test", "cliff_test"]
 
 # In the copy no test waits for the program and the plugins: those above load neither.
 TRIM = ("tests/CMakeLists.txt", "    add_dependencies(${name} lodbench_under_test)\n", "")
