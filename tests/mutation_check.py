@@ -26,7 +26,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TESTS = ["error_pool_test", "image_difference_test", "capture_clip_test", "sample_errors_test", "truth_test",
          "reference_sight_test", "reference_terrain_test", "drawn_surface_test", "drawn_surface_rays_test",
          "drawn_surface_skirts_test", "fault_table_test", "fault_table_cover_test", "greedy_triangulation_test",
-         "needed_tiles_test"]
+         "needed_tiles_test", "cliff_test"]
 
 # In the copy no test waits for the program and the plugins: those above load neither.
 TRIM = ("tests/CMakeLists.txt", "    add_dependencies(${name} lodbench_under_test)\n", "")
@@ -112,7 +112,15 @@ MUTANTS = [
     Mutant("holes_are_cracks", "pixel_errors.cpp",
            "return came_over_covered_ground(ray(x, y), to) &&", "return"),
     Mutant("sliver_slack_dropped", "pixel_errors.cpp",
-           "if (nearest && off > kDepthSlack * depth &&", "if (nearest && off > kDepthSlack * depth) return std::nullopt;\n        if (nearest && off > kDepthSlack * depth &&"),
+           "if (!surface_.sliver_near(", "return std::nullopt;\n            if (!surface_.sliver_near("),
+    Mutant("rounding_on_steep_ground_counts", "pixel_errors.cpp",
+           "if (distance.px - least.px > kRoundingPx) distance = least;", ""),
+    Mutant("depth_between_two_rays_is_elsewhere", "pixel_errors.cpp",
+           "(*met < depth ? low : high) = middle;", "break;"),
+    Mutant("uncertain_depths_are_judged", "pixel_errors.cpp",
+           "return pixels_between(point, point + glm::dvec3(0, 0, uncertain)) > kJudgedPx;", "return false;"),
+    Mutant("heights_around_forget_the_slope", "reference_terrain.cpp",
+           "const double change = radius * glm::length(steepest);", "const double change = 0;"),
     Mutant("slivers_everywhere", "drawn_surface.cpp",
            "return nearest <= radius && area < thickness * longest;",
            "return nearest <= radius;"),

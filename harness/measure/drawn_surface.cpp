@@ -205,6 +205,28 @@ std::optional<double> DrawnSurface::height(const glm::dvec2& position) const {
     return origin_.z + relative;
 }
 
+DrawnSurface::Rounding DrawnSurface::rounding(const glm::dvec2& position) const {
+    const glm::dvec2 point = position - glm::dvec2(origin_);
+    Rounding greatest;
+    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
+        return is_near(node, i, point, point);
+    };
+    const auto visit = [&](const glm::vec3* corners) {
+        const double plan = plan_rounding(corners);
+        if (!PlanTriangle(corners).covers(point) &&
+            nearest_on_outline(corners, point).distance > plan) {
+            return;
+        }
+        const float highest =
+            std::max({std::abs(corners[0].z), std::abs(corners[1].z), std::abs(corners[2].z)});
+        greatest = {std::max(greatest.plan, plan),
+                    std::max(greatest.height, kRounding * double(highest))};
+    };
+    surface_.each(enters, visit);
+    slivers_.each(enters, visit);
+    return greatest;
+}
+
 double DrawnSurface::relative_height(const glm::dvec2& point) const {
     double highest = -kInfinity;
     const FloatBracket bracket(point);
@@ -276,10 +298,9 @@ std::optional<double> DrawnSurface::meets_surface(const glm::dvec3& origin,
     return least_meeting(surface_, low_, high_, origin, direction, from, to);
 }
 
-bool DrawnSurface::sliver_near(const glm::dvec3& origin, const glm::dvec3& direction, double from,
-                               double to, double radius, double thickness) const {
-    const glm::dvec3 start = origin - origin_;
-    const glm::dvec3 axis = glm::normalize(direction);
+template <typename Visit>
+bool DrawnSurface::any_beside(const glm::dvec3& start, const glm::dvec3& direction, double from,
+                              double to, double radius, const Visit& visit) const {
     // In plan: the boxes that come within the radius of the segment, by their slabs.
     const glm::dvec2 a = glm::dvec2(start + from * direction);
     const glm::dvec2 b = glm::dvec2(start + to * direction);
@@ -303,7 +324,31 @@ bool DrawnSurface::sliver_near(const glm::dvec3& origin, const glm::dvec3& direc
         }
         return enter <= leave;
     };
-    return surface_.any(enters, [&](const glm::vec3* corners) {
+    return surface_.any(enters, visit);
+}
+
+DrawnSurface::Reach DrawnSurface::reach_beside(const glm::dvec3& origin,
+                                               const glm::dvec3& direction, double from, double to,
+                                               double radius, const glm::dvec3& forward) const {
+    const glm::dvec3 start = origin - origin_;
+    Reach reach;
+    (void)any_beside(start, direction, from, to, radius, [&](const glm::vec3* corners) {
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 size = glm::abs(glm::dvec3(corners[i]));
+            reach.largest = std::max({reach.largest, size.x, size.y, size.z});
+            reach.nearest =
+                std::min(reach.nearest, glm::dot(forward, glm::dvec3(corners[i]) - start));
+        }
+        return false;
+    });
+    return reach;
+}
+
+bool DrawnSurface::sliver_near(const glm::dvec3& origin, const glm::dvec3& direction, double from,
+                               double to, double radius, double thickness) const {
+    const glm::dvec3 start = origin - origin_;
+    const glm::dvec3 axis = glm::normalize(direction);
+    return any_beside(start, direction, from, to, radius, [&](const glm::vec3* corners) {
         // Projected to the plane at distance 1 along the ray.
         std::array<glm::dvec3, 3> seen;
         for (std::size_t i = 0; i < 3; ++i) {

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -62,6 +63,13 @@ public:
     /// l_f at a world position inside the extent; nothing where no triangle covers it.
     [[nodiscard]] std::optional<double> height(const glm::dvec2& position) const;
 
+    /// How uncertain captured positions are, metres: see kRoundingUnits.
+    struct Rounding {
+        double plan = 0, height = 0;
+    };
+    /// The greatest among the triangles of l_f at a world position; 0 where none covers it.
+    [[nodiscard]] Rounding rounding(const glm::dvec2& position) const;
+
     /// l_f - h in metres at every sample, row by row as `heights`: float32, so that its rounding is
     /// relative to the difference; NaN where no triangle covers the sample. Parallel; the same to
     /// the bit each time, and `height` minus h to the bit. Throws ContractError when a span's size
@@ -86,6 +94,16 @@ public:
     [[nodiscard]] std::optional<double> meets_surface(const glm::dvec3& origin,
                                                       const glm::dvec3& direction, double from,
                                                       double to) const;
+
+    /// Of the triangles of l_f that come within a tangent of a ray's part in plan: what the
+    /// precision of their picture depends on, metres.
+    struct Reach {
+        double largest = 0;  ///< coordinate of a corner, relative to the eye
+        double nearest = std::numeric_limits<double>::infinity();  ///< depth of a corner
+    };
+    [[nodiscard]] Reach reach_beside(const glm::dvec3& origin, const glm::dvec3& direction,
+                                     double from, double to, double radius,
+                                     const glm::dvec3& forward) const;
 
     /// Whether a triangle of l_f that is seen thinner than the tangent `thickness` passes within
     /// the tangent `radius` of the ray's part [from, to], seen from its origin.
@@ -122,6 +140,11 @@ private:
     /// Whether a triangle's box comes within its rounding of the rectangle: if not, nothing covers
     /// any point of it.
     [[nodiscard]] bool anything_near(const glm::dvec2& low, const glm::dvec2& high) const;
+    /// Calls `visit(corners)` for the triangles of l_f whose box in plan comes within the tangent
+    /// `radius` of a ray's part, relative to origin_, until it returns true.
+    template <typename Visit>
+    [[nodiscard]] bool any_beside(const glm::dvec3& start, const glm::dvec3& direction, double from,
+                                  double to, double radius, const Visit& visit) const;
     [[nodiscard]] std::optional<double> least_meeting(const TriangleTree& tree,
                                                       const glm::dvec2& low, const glm::dvec2& high,
                                                       const glm::dvec3& origin,

@@ -16,6 +16,7 @@ namespace lodbench::measure {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPositionRounding = DrawnSurface::kRoundingUnits / 16777216;  // 2^-24
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 /// What a pixel shows, the reference's doubtful ones set to what was drawn.
@@ -39,6 +40,7 @@ public:
     struct Row {
         ErrorSums sums;
         std::uint64_t cracks = 0, skirts = 0, silhouettes = 0, clipped = 0, unjudged = 0;
+        std::uint64_t undecided = 0;
     };
 
     void measure_row(std::size_t y, double bound, ErrorPool& pool, PixelErrors& errors,
@@ -102,52 +104,132 @@ private:
                           terrain_.info().extent_max());
     }
 
-    /// From a point to the true interval above or below it, in pixels.
-    [[nodiscard]] float distance_to_truth(const glm::dvec3& point, const HeightInterval& truth,
+    /// From a point at `place` to the true interval above or below it, in pixels, less what the
+    /// rounding of captured positions makes of it on steep ground: see the header.
+    [[nodiscard]] float distance_to_truth(const glm::dvec3& point, const glm::dvec2& place,
                                           Row& row) const {
-        const double nearest = std::clamp(point.z, truth.low, truth.high);
-        if (nearest == point.z) return 0;
-        const PixelProjection::Distance distance =
-            pixels_.distance(pixels_.local({point.x, point.y, nearest}), pixels_.local(point));
+        const HeightInterval truth = terrain_.interval(place);
+        if (point.z >= truth.low && point.z <= truth.high) return 0;
+        PixelProjection::Distance distance = distance_to(truth, point);
+        if (distance.px > kSettledPx) {
+            const DrawnSurface::Rounding rounding = surface_.rounding(place);
+            HeightInterval around = terrain_.interval_within(place, rounding.plan);
+            around = {around.low - rounding.height, around.high + rounding.height};
+            const PixelProjection::Distance least = distance_to(around, point);
+            if (distance.px - least.px > kRoundingPx) distance = least;
+        }
         if (distance.clipped) ++row.clipped;
         return float(distance.px);
     }
 
+    [[nodiscard]] PixelProjection::Distance distance_to(const HeightInterval& heights,
+                                                        const glm::dvec3& point) const {
+        const double nearest = std::clamp(point.z, heights.low, heights.high);
+        return pixels_.distance(pixels_.local({point.x, point.y, nearest}), pixels_.local(point));
+    }
+
+    /// NaN where the depth cannot tell.
     [[nodiscard]] float drawn_error(std::size_t x, std::size_t y, double depth, Row& row) const {
-        const glm::dvec3 point = drawn_point(x, y, depth);
-        return distance_to_truth(point, terrain_.interval(glm::dvec2(point)), row);
-    }
-
-    /// What was drawn at a pixel, in the world: see the header on slivers.
-    [[nodiscard]] glm::dvec3 drawn_point(std::size_t x, std::size_t y, double depth) const {
-        const glm::dvec3 point = pixels_.eye() + ray(x, y) * depth;
-        const glm::dvec2 place = on_extent(point);
-        const std::optional<double> surface = surface_.height(place);
+        glm::dvec3 point = pixels_.eye() + ray(x, y) * depth;
+        const std::optional<double> surface = surface_.height(on_extent(point));
         // As its error will be measured: straight up or down, also where it lies beyond the border.
-        if (surface && pixels_between({point.x, point.y, *surface}, point) <= kSettledPx) {
-            return point;
+        if (!surface || pixels_between({point.x, point.y, *surface}, point) > kSettledPx) {
+            const Slack slack = slack_of(x, y, depth);
+            if (const auto drawn = point_on_surface(x, y, depth, slack)) {
+                point = *drawn;
+            } else if (error_is_uncertain(ray(x, y), depth, slack, point)) {
+                ++row.undecided;
+                return kNothing;
+            }
         }
-        return point_on_surface(x, y, depth).value_or(point);
+        return distance_to_truth(point, on_extent(point), row);
     }
 
-    /// Where a ray beside the pixel's meets l_f nearest to a depth that is not on it.
+    /// By how much the rasteriser may have drawn beside a pixel's ray and its depth.
+    struct Slack {
+        double px;
+        double aside, along;  ///< metres
+    };
+    [[nodiscard]] Slack slack_of(std::size_t x, std::size_t y, double depth) const {
+        const DrawnSurface::Reach reach = surface_.reach_beside(
+            pixels_.eye(), ray(x, y), depth * (1 - kSliverSlack), depth * (1 + kSliverSlack),
+            pixels_.tangent(1), pixels_.forward());
+        const double moved = kPositionRounding * reach.largest;
+        const double px = kSlackPx + moved / (depth * pixels_.tangent(1));
+        const double interpolated =
+            kInterpolation * depth / std::clamp(reach.nearest, near_, depth);
+        const double along = std::max(kDepthSlack, interpolated) * depth + moved;
+        return {px, pixels_.tangent(px) * depth, along};
+    }
+
+    /// Whether the true height below or above a point, and so its error, is uncertain by more than
+    /// kJudgedPx to either side for the slack of its place.
+    [[nodiscard]] bool error_is_uncertain(const glm::dvec3& direction, double depth,
+                                          const Slack& slack, const glm::dvec3& point) const {
+        const glm::dvec2 place = on_extent(point);
+        if (slack.along >= kSliverSlack * depth) return true;  // farther than l_f is looked for
+        const double radius = slack.along * glm::length(glm::dvec2(direction)) + slack.aside;
+        const HeightInterval here = terrain_.interval(place);
+        const HeightInterval around = terrain_.interval_within(place, radius);
+        const double ground = ((around.high - around.low) - (here.high - here.low)) / 2;
+        const double uncertain = ground + slack.along * std::abs(direction.z) + slack.aside;
+        return pixels_between(point, point + glm::dvec3(0, 0, uncertain)) > kJudgedPx;
+    }
+
+    struct Meeting {
+        glm::dvec2 shift;
+        double depth;
+    };
+
+    /// Where a ray within the slack of the pixel's meets l_f at a depth; or nearest to it, where a
+    /// sliver is near.
     [[nodiscard]] std::optional<glm::dvec3> point_on_surface(std::size_t x, std::size_t y,
-                                                             double depth) const {
-        std::optional<glm::dvec3> nearest;
-        double off = kInfinity;
-        for (const glm::dvec2& shift : kShifts) {
-            const auto met = meets_surface(x, y, shift, depth, kSliverSlack);
-            if (!met || std::abs(*met - depth) >= off) continue;
-            off = std::abs(*met - depth);
-            nearest = pixels_.eye() + ray(x, y, shift) * *met;
+                                                             double depth,
+                                                             const Slack& slack) const {
+        std::vector<Meeting> meetings;
+        for (const glm::dvec2& direction : kShifts) {
+            const glm::dvec2 shift = direction * (slack.px / kSlackPx);
+            auto met =
+                meets_surface(x, y, shift, depth, std::min(slack.along / depth, kSliverSlack));
+            if (!met) met = meets_surface(x, y, shift, depth, kSliverSlack);
+            if (met) meetings.push_back({shift, *met});
         }
-        if (nearest && off > kDepthSlack * depth &&
-            !surface_.sliver_near(pixels_.eye(), ray(x, y), depth * (1 - kSliverSlack),
-                                  depth * (1 + kSliverSlack), pixels_.tangent(kSlackPx),
-                                  pixels_.tangent(kSlackPx))) {
-            return std::nullopt;
+        if (meetings.empty()) return std::nullopt;
+        const auto off = [depth](const Meeting& met) { return std::abs(met.depth - depth); };
+        const Meeting nearest = std::ranges::min(meetings, {}, off);
+        if (off(nearest) > slack.along) {
+            if (const auto between = point_between(x, y, meetings, depth, slack)) return between;
+            if (!surface_.sliver_near(pixels_.eye(), ray(x, y), depth * (1 - kSliverSlack),
+                                      depth * (1 + kSliverSlack), pixels_.tangent(kSlackPx),
+                                      pixels_.tangent(kSlackPx))) {
+                return std::nullopt;
+            }
         }
-        return nearest;
+        return pixels_.eye() + ray(x, y, nearest.shift) * nearest.depth;
+    }
+
+    /// Where rays meet l_f before and behind a depth: the point at which one between them meets it
+    /// there. Nothing where l_f jumps from the one to the other.
+    [[nodiscard]] std::optional<glm::dvec3> point_between(std::size_t x, std::size_t y,
+                                                          const std::vector<Meeting>& meetings,
+                                                          double depth, const Slack& slack) const {
+        for (const Meeting& before : meetings) {
+            for (const Meeting& behind : meetings) {
+                if (before.depth >= depth || behind.depth <= depth) continue;
+                glm::dvec2 low = before.shift, high = behind.shift;
+                // To 2^-24 of the slack: what has a step left there is no face.
+                for (int i = 0; i < 24; ++i) {
+                    const glm::dvec2 middle = 0.5 * (low + high);
+                    const auto met = meets_surface(x, y, middle, depth, kSliverSlack);
+                    if (!met) break;
+                    if (std::abs(*met - depth) <= slack.along) {
+                        return pixels_.eye() + ray(x, y, middle) * *met;
+                    }
+                    (*met < depth ? low : high) = middle;
+                }
+            }
+        }
+        return std::nullopt;
     }
 
     /// The depth at which a ray beside the pixel's meets a triangle of l_f, about a depth.
@@ -168,7 +250,7 @@ private:
         const glm::dvec2 place = on_extent(point);
         const std::optional<double> drawn = surface_.height(place);
         if (!drawn) return std::numeric_limits<float>::infinity();
-        return distance_to_truth({place.x, place.y, *drawn}, terrain_.interval(place), row);
+        return distance_to_truth({place.x, place.y, *drawn}, place, row);
     }
 
     [[nodiscard]] bool reference_shows(std::size_t x, std::size_t y, const ReferenceHit& hit,
@@ -302,6 +384,7 @@ PixelErrors measure_pixels(const ReferenceTerrain& terrain, const DrawnSurface& 
         errors.silhouette_pixels += row.silhouettes;
         errors.clipped += row.clipped;
         errors.unjudged_pixels += row.unjudged;
+        errors.undecided_pixels += row.undecided;
     }
     measure_silhouette(shows, width, height, errors);
     return errors;

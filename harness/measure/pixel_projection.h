@@ -63,6 +63,7 @@ public:
     [[nodiscard]] double tangent(double px) const { return px / lambda_; }
 
     [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
+    [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
     [[nodiscard]] double near_plane() const { return near_; }
 
 private:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
 
@@ -194,6 +195,33 @@ HeightInterval ReferenceTerrain::interval_in_grid(double u, double v) const {
 HeightInterval ReferenceTerrain::interval(const glm::dvec2& position) const {
     const glm::dvec2 at = in_grid(position);
     return interval_in_grid(at.x, at.y);
+}
+
+HeightInterval ReferenceTerrain::interval_within(const glm::dvec2& position, double radius) const {
+    const glm::dvec2 at = in_grid(position);
+    const glm::dvec2 reach = radius / info_.spacing;
+    const int west = cell_of(at.x - reach.x, info_.columns - 1);
+    const int north = cell_of(at.y - reach.y, info_.rows - 1);
+    const int columns = cell_of(at.x + reach.x, info_.columns - 1) - west + 1;
+    const int rows = cell_of(at.y + reach.y, info_.rows - 1) - north + 1;
+    const HeightInterval samples = range({north, west, rows + 1, columns + 1});
+    constexpr int kFew = 4;  // cells a side: of more, what their samples span says enough
+    if (rows > kFew || columns > kFew) return samples;
+    // Both triangulations of a cell rise along x as its north or its south side does, along y as
+    // its west or its east side.
+    glm::dvec2 steepest(0.0);
+    for (int row = north; row < north + rows; ++row) {
+        for (int column = west; column < west + columns; ++column) {
+            const GridCell cell = cell_at(heights_, info_.columns, row, column);
+            const glm::dvec2 rise(
+                std::max(std::abs(cell.ne - cell.nw), std::abs(cell.se - cell.sw)),
+                std::max(std::abs(cell.sw - cell.nw), std::abs(cell.se - cell.ne)));
+            steepest = glm::max(steepest, rise / info_.spacing);
+        }
+    }
+    const double change = radius * glm::length(steepest);
+    const HeightInterval here = interval_in_grid(at.x, at.y);
+    return {std::max(samples.low, here.low - change), std::min(samples.high, here.high + change)};
 }
 
 HeightInterval ReferenceTerrain::range(const SampleRect& samples) const {

@@ -44,6 +44,11 @@ public:
     /// The true height at a world position (x, y), which is clamped to the extent.
     [[nodiscard]] HeightInterval interval(const glm::dvec2& position) const;
 
+    /// Bounds of the true heights within `radius` metres in plan of a position, which is clamped to
+    /// the extent: conservative, and where the ground around is even no wider than its slope times
+    /// the diameter.
+    [[nodiscard]] HeightInterval interval_within(const glm::dvec2& position, double radius) const;
+
     /// Least and greatest height of the samples of a rectangle (clamped to the grid), or an
     /// interval around it: conservative.
     [[nodiscard]] HeightInterval range(const SampleRect& samples) const;

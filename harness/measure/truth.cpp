@@ -138,6 +138,7 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
     total_.skirt_max = std::max(total_.skirt_max, pixels.skirt_pixels);
     total_.clipped += samples.clipped + pixels.clipped;
     total_.unjudged += pixels.unjudged_pixels;
+    total_.undecided += pixels.undecided_pixels;
     total_.pixels += depth.size();
     total_.walls = std::max(total_.walls, surface_->wall_triangle_count());
     total_.silhouette_max = std::max(total_.silhouette_max, pixels.silhouette_max);

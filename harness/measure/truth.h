@@ -76,7 +76,8 @@ struct TruthSummary {
     std::uint64_t crack_total = 0, crack_max = 0, skirt_total = 0, skirt_max = 0;
     std::uint64_t clipped = 0;   ///< segments from true to drawn points cut at near depth
     std::uint64_t unjudged = 0;  ///< pixels whose ray starts below l_f: cracks cannot be told there
-    std::uint64_t pixels = 0;    ///< of all measured frames
+    std::uint64_t undecided = 0;  ///< drawn pixels without a pixel error: see kJudgedPx
+    std::uint64_t pixels = 0;     ///< of all measured frames
     std::uint64_t walls =
         0;  ///< upright triangles above l_f, in no screen error; greatest of a frame
     double silhouette_max = 0, silhouette_mean = 0;

@@ -8,23 +8,12 @@ namespace lodbench::results {
 
 namespace {
 
-constexpr std::array kFields = {"truth_frames",
-                                "screen_error_px",
-                                "visible_error_px",
-                                "pixel_error_px",
-                                "pixel_error_realtime_px",
-                                "crack_pixels",
-                                "skirt_pixels",
-                                "uncovered_samples",
-                                "silhouette_px",
-                                "popping_px",
-                                "height_rmse_m",
-                                "image",
-                                "bound_honesty",
-                                "clipped_segments",
-                                "unjudged_pixels",
-                                "wall_triangles",
-                                "economy"};
+constexpr std::array kFields = {"truth_frames",     "screen_error_px",         "visible_error_px",
+                                "pixel_error_px",   "pixel_error_realtime_px", "crack_pixels",
+                                "skirt_pixels",     "uncovered_samples",       "silhouette_px",
+                                "popping_px",       "height_rmse_m",           "image",
+                                "bound_honesty",    "clipped_segments",        "unjudged_pixels",
+                                "undecided_pixels", "wall_triangles",          "economy"};
 
 Json::Value count(std::uint64_t value) {
     return Json::UInt64(value);
@@ -126,6 +115,7 @@ Json::Value truth_record(const measure::TruthSummary& truth) {
     json["bound_honesty"] = number_or_inf(truth.bound_honesty);
     json["clipped_segments"] = count(truth.clipped);
     json["unjudged_pixels"] = count(truth.unjudged);
+    json["undecided_pixels"] = count(truth.undecided);
     json["wall_triangles"] = count(truth.walls);
     return json;
 }

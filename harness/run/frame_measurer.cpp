@@ -82,6 +82,12 @@ void FrameMeasurer::finish(results::CellResult& result) const {
                         "be told",
                         summary.unjudged, summary.pixels));
     }
+    if (summary.undecided > 0) {
+        result.warnings.push_back(fmt::format(
+            "{} of {} measured pixels show no point of the surface that was drawn, over ground so "
+            "steep that their depth cannot tell their error: they are left out of the pixel error",
+            summary.undecided, summary.pixels));
+    }
 }
 
 void FrameMeasurer::write_picture(const std::filesystem::path& path,

@@ -58,8 +58,8 @@ inline constexpr const char* kTruthColumns[] = {
 
 /// Fields of a cell that the truth fills from the lockstep replay.
 inline constexpr const char* kLockstepFields[] = {
-    "truth_frames", "screen_error_px", "visible_error_px",  "pixel_error_px", "crack_pixels",
-    "skirt_pixels", "silhouette_px",   "uncovered_samples", "popping_px",     "height_rmse_m",
-    "image",        "bound_honesty",   "clipped_segments",  "unjudged_pixels"};
+    "truth_frames", "screen_error_px", "visible_error_px",  "pixel_error_px",  "crack_pixels",
+    "skirt_pixels", "silhouette_px",   "uncovered_samples", "popping_px",      "height_rmse_m",
+    "image",        "bound_honesty",   "clipped_segments",  "unjudged_pixels", "undecided_pixels"};
 
 }  // namespace lodbench::test

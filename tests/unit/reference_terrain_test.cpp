@@ -333,6 +333,38 @@ TEST(ReferenceTerrain, vertical_rays_measure_the_interval) {
 }
 
 // Spacings that round: the border is not the origin plus a representable number of cells.
+TEST(ReferenceTerrain, heights_within_a_radius_are_bounded_and_on_a_ramp_as_its_slope_says) {
+    base::SplitMix64 random(5);
+    TerrainInfo info;
+    info.rows = 9;
+    info.columns = 12;
+    info.spacing = {2, 3};
+    std::vector<float> rough, ramp;
+    for (int row = 0; row < info.rows; ++row) {
+        for (int column = 0; column < info.columns; ++column) {
+            rough.push_back(float(uniform(random, -500, 500)));
+            ramp.push_back(float(8 * column));  // 4 m a metre eastward
+        }
+    }
+    const ReferenceTerrain terrain(rough, info);
+    for (int round = 0; round < 2000; ++round) {
+        const glm::dvec2 centre(uniform(random, -1, 23), uniform(random, -1, 25));
+        const double radius = std::exp2(uniform(random, -12, 4));
+        const HeightInterval bounds = terrain.interval_within(centre, radius);
+        for (int i = 0; i < 20; ++i) {
+            const double angle = uniform(random, 0, 2 * std::numbers::pi);
+            const double distance = uniform(random, 0, radius);
+            const HeightInterval there =
+                terrain.interval(centre + distance * glm::dvec2(std::cos(angle), std::sin(angle)));
+            EXPECT_LE(bounds.low, there.low + 1e-9);
+            EXPECT_GE(bounds.high, there.high - 1e-9);
+        }
+    }
+    const HeightInterval bounds = ReferenceTerrain(ramp, info).interval_within({11, 10}, 0.25);
+    EXPECT_NEAR(bounds.low, 44 - 1, 1e-9);
+    EXPECT_NEAR(bounds.high, 44 + 1, 1e-9);
+}
+
 TEST(ReferenceTerrain, the_border_is_part_of_the_ground_and_nothing_beyond_it) {
     for (int i = 0; i < 100; ++i) {
         const glm::dvec2 spacing(0.1 + 0.01 * i, 0.3 + 0.07 * i);
