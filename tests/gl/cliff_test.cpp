@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fault_table.h"
+#include "measure/pixel_projection.h"
 
 namespace lodbench::measure {
 namespace {
@@ -59,6 +60,41 @@ TEST_F(Cliff, exact_surface_has_no_pixel_error_however_steep) {
 
 TEST_F(Cliff, exact_hills_a_thousand_times_as_high_have_no_pixel_error) {
     expect_no_pixel_error(hills(1000), 64000);
+}
+
+TEST_F(Cliff, depths_of_rays_beside_the_pixels_are_found_between_the_pixels_rays) {
+    // As a rasteriser that interpolates between snapped vertices gives them: those of rays 1/40 px
+    // beside the pixels'. Along the face, 2 m from it, that is metres of depth, more than a depth
+    // is off by, and tens of metres of height.
+    const double height = 1e4;
+    const auto terrain = terrain_of(cliff(height));
+    Camera camera =
+        camera_at({kOrigin.x + 318.377, kOrigin.y - 300.123, 0.05 * height}, 0, 0, 0, 10);
+    camera.viewport = {320, 240};
+    const ReferenceTerrain reference(terrain->samples(), terrain->info());
+    const DrawnSurface surface(captured(grid(cliff(height)), camera), terrain->info());
+    const PixelProjection pixels(camera);
+    std::vector<float> depth;
+    int off = 0;
+    for (int y = 0; y < camera.viewport.height; ++y) {
+        for (int x = 0; x < camera.viewport.width; ++x) {
+            const auto met = [&](double shift) {
+                return surface.meets_surface(pixels.eye(),
+                                             pixels.direction(x + 0.5 + shift, y + 0.5),
+                                             camera.near_plane, kInfinity);
+            };
+            const auto beside = met(1.0 / 40);
+            const auto here = met(0);
+            depth.push_back(beside ? float(camera.near_plane / *beside) : 0.0F);
+            if (here && beside && std::abs(*beside - *here) > 2 * kDepthSlack * *here) ++off;
+        }
+    }
+    ASSERT_GT(off, 500);
+    ErrorPool pool;
+    const PixelErrors errors = measure_pixels(reference, surface, camera, depth, kInfinity, pool);
+    EXPECT_LE(*pool.summary(false).max, kExactPixel);
+    // At the face's end the ray beside a pixel may meet it and no other.
+    EXPECT_LE(errors.undecided_pixels, 2U);
 }
 
 TEST_F(Cliff, face_that_stands_beside_its_place_is_off_by_its_slope) {
