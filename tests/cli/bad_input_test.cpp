@@ -210,7 +210,8 @@ TEST_F(BadInput, damaged_elevation_models_are_refused) {
     expect_refused({"terrain", "info", row.string()},
                    row.string() + ": 1 rows x 5 columns make no surface");
     const fs::path text = write("words.asc", "ncols many\n");
-    expect_refused({"terrain", "info", text.string()}, text.string() + ": is no elevation model");
+    expect_refused({"terrain", "info", text.string()},
+                   text.string() + ": line 1: ncols is \"many\"; expected one number");
 }
 
 }  // namespace
