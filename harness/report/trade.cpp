@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "api/error.h"
 #include "report/aligned_table.h"
@@ -18,6 +19,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool finite(const TradePoint& point) {
     return std::isfinite(point.cost) && std::isfinite(point.error);
+}
+
+double rounded_error(const TradePoint& point) {
+    return std::round(point.error / kErrorResolution);
+}
+
+double least(const TradePoint& point) {
+    return point.cost - point.below;
+}
+
+double most(const TradePoint& point) {
+    return point.cost + point.above;
 }
 
 /// The rows of one scenario after the other.
@@ -43,23 +56,30 @@ std::string text_of(const std::optional<double>& value, const char* format, doub
 
 }  // namespace
 
+bool beats(const TradePoint& a, const TradePoint& b) {
+    if (!finite(a) || !finite(b)) return false;
+    const double error_a = rounded_error(a);
+    const double error_b = rounded_error(b);
+    if (error_a > error_b || most(b) < least(a)) return false;
+    return error_a < error_b || most(a) < least(b);
+}
+
 std::vector<std::size_t> pareto_front(std::span<const TradePoint> points) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (finite(points[i])) order.push_back(i);
     }
-    std::ranges::sort(
-        order, {}, [&](std::size_t i) { return std::tuple(points[i].cost, points[i].error, i); });
+    // Whatever beats a point comes before it.
+    std::ranges::sort(order, {}, [&](std::size_t i) {
+        return std::pair(rounded_error(points[i]), most(points[i]));
+    });
     std::vector<std::size_t> front;
-    double least = kInfinity;
     for (const std::size_t i : order) {
-        const TradePoint& point = points[i];
-        const bool equal = !front.empty() && points[front.back()].cost == point.cost &&
-                           points[front.back()].error == point.error;
-        if (!equal && point.error >= least) continue;
-        least = point.error;
-        front.push_back(i);
+        if (std::ranges::none_of(front, [&](std::size_t j) { return beats(points[j], points[i]); }))
+            front.push_back(i);
     }
+    std::ranges::sort(
+        front, {}, [&](std::size_t i) { return std::tuple(points[i].cost, points[i].error, i); });
     return front;
 }
 
@@ -75,18 +95,32 @@ double hypervolume(std::span<const TradePoint> points, const TradePoint& referen
             within.push_back(point);
         }
     }
+    std::ranges::sort(within, {}, &TradePoint::cost);
     double area = 0;
     double ceiling = reference.error;
-    for (const std::size_t i : pareto_front(within)) {
-        area += (reference.cost - within[i].cost) * (ceiling - within[i].error);
-        ceiling = within[i].error;
+    for (const TradePoint& point : within) {
+        area += (reference.cost - point.cost) * std::max(ceiling - point.error, 0.0);
+        ceiling = std::min(ceiling, point.error);
     }
     return area / (reference.cost * reference.error);
 }
 
-TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric) {
-    const auto frame_ms = measure::median(results::numbers_of(group.good, "frame_ms", "mean"));
-    return {frame_ms.value_or(kInfinity), results::pixel_error(group, metric).value_or(kInfinity)};
+TradePoint trade_point(std::span<const double> costs, std::optional<double> error,
+                       std::uint64_t seed) {
+    TradePoint point{kInfinity, error.value_or(kInfinity)};
+    const auto interval = measure::run_interval(costs, seed);
+    if (!interval) return point;
+    point.cost = interval->centre;
+    if (!std::isfinite(interval->low) || !std::isfinite(interval->high)) return point;
+    point.below = std::max(interval->centre - interval->low, 0.0);
+    point.above = std::max(interval->high - interval->centre, 0.0);
+    return point;
+}
+
+TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric,
+                       std::uint64_t seed) {
+    return trade_point(results::numbers_of(group.good, "frame_ms", "mean"),
+                       results::pixel_error(group, metric), seed);
 }
 
 std::optional<TradePoint> reference_point(std::span<const TradePoint> points) {
@@ -133,7 +167,7 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
                 row.knob = results::read_number_or_inf((*cell)["params"][knob->second]);
         }
         row.error = results::pixel_error(group, metric);
-        row.point = trade_point(group, metric);
+        row.point = trade_point(group, metric, seed);
         row.frame_ms =
             measure::run_interval(results::numbers_of(group.good, "frame_ms", "mean"), seed);
         row.triangles = measure::median(results::numbers_of(group.good, "triangles", "mean"));
