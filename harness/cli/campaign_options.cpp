@@ -28,6 +28,16 @@ std::string command_line() {
     return text;
 }
 
+/// As a shell reads it back.
+std::string shell_word(const std::string& word) {
+    constexpr const char* kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    if (!word.empty() && word.find_first_not_of(kPlain) == word.npos) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
 /// A folder that this call made: runs that start in the same second get one each.
 std::filesystem::path make_default_out() {
     const std::filesystem::path parent = "lodbench-results";
@@ -129,6 +139,11 @@ std::string Progress::time_left(std::size_t cells, double fraction) const {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
     const auto seconds = std::int64_t(std::ceil(elapsed / done * (double(cells) - fraction)));
     return fmt::format(", {}:{:02} left", seconds / 60, seconds % 60);
+}
+
+std::string results_lines(const std::filesystem::path& out) {
+    return fmt::format("results   {}\nreport    lodbench report {}\n", out.string(),
+                       shell_word(out.string()));
 }
 
 Json::Value to_json(const run::CampaignOutcome& outcome) {

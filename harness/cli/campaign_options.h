@@ -65,6 +65,9 @@ private:
     std::size_t finished_ = 0;
 };
 
+/// The last lines of a comparison: where its results are, and the command that draws them.
+[[nodiscard]] std::string results_lines(const std::filesystem::path& out);
+
 /// An outcome as --json prints it.
 [[nodiscard]] Json::Value to_json(const run::CampaignOutcome& outcome);
 

@@ -54,6 +54,48 @@ std::string text_of(const std::optional<double>& value, const char* format, doub
     return value ? fmt::format(fmt::runtime(format), *value / unit) : "-";
 }
 
+/// One scenario's table, its heading above it and its failures below.
+std::string scenario_text(std::span<const TradeRow> rows, results::ErrorMetric metric) {
+    std::string text = fmt::format("## {}\n\n", rows.front().scenario);
+    std::vector<std::vector<std::string>> lines = {{"method", std::string(name_of(metric)) + " px",
+                                                    "frame ms (range)", "triangles", "GPU MiB",
+                                                    "prepare s", "front"}};
+    std::string failures;
+    for (const TradeRow& row : rows) {
+        lines.push_back({row.label, text_of(row.error, "{:.3f}"),
+                         row.frame_ms ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
+                                                    row.frame_ms->low, row.frame_ms->high)
+                                      : "-",
+                         text_of(row.triangles, "{:.0f}"),
+                         text_of(row.gpu_bytes, "{:.1f}", results::kMebibyte),
+                         text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
+        for (const std::string& failure : row.failures) {
+            failures += fmt::format("\n- {}, {}", row.label, failure);
+        }
+    }
+    text += aligned_table(lines) + failures;
+    if (!failures.empty()) text += "\n";
+    return text;
+}
+
+std::string hypervolume_text(std::span<const TradeRow> rows, results::ErrorMetric metric,
+                             const std::optional<TradePoint>& reference) {
+    const auto corner = reference ? reference : reference_point(points_of(rows));
+    if (!corner) return {};
+    std::map<std::string, std::vector<TradePoint>> methods;
+    for (const TradeRow& row : rows) methods[row.method].push_back(row.point);
+    std::vector<std::vector<std::string>> volumes = {{"method", "hypervolume"}};
+    for (const MethodTrade& trade : method_trades(methods, *corner)) {
+        volumes.push_back({trade.method, fmt::format("{:.4f}", trade.hypervolume)});
+    }
+    return fmt::format(
+               "\nHypervolume of {} pixel error and frame time, of the rectangle up to {:.3f} px "
+               "and {:.3f} ms{}:\n\n",
+               name_of(metric), corner->error, corner->cost,
+               reference ? "" : " (a tenth beyond the worst point)") +
+           aligned_table(volumes);
+}
+
 }  // namespace
 
 bool beats(const TradePoint& a, const TradePoint& b) {
@@ -203,45 +245,21 @@ Json::Value to_json(const std::vector<TradeRow>& rows) {
     return array;
 }
 
-std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric,
-                       const std::optional<TradePoint>& reference) {
+std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric) {
     std::string text;
     each_scenario(rows, [&](std::span<const TradeRow> scenario) {
-        text += fmt::format("{}## {}\n\n", text.empty() ? "" : "\n", scenario.front().scenario);
-        std::vector<std::vector<std::string>> lines = {
-            {"method", std::string(name_of(metric)) + " px", "frame ms (range)", "triangles",
-             "GPU MiB", "prepare s", "front"}};
-        std::vector<std::string> failures;
-        for (const TradeRow& row : scenario) {
-            lines.push_back({row.label, text_of(row.error, "{:.3f}"),
-                             row.frame_ms
-                                 ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
-                                               row.frame_ms->low, row.frame_ms->high)
-                                 : "-",
-                             text_of(row.triangles, "{:.0f}"),
-                             text_of(row.gpu_bytes, "{:.1f}", results::kMebibyte),
-                             text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
-            for (const std::string& failure : row.failures) {
-                failures.push_back(row.label + ", " + failure);
-            }
-        }
-        text += aligned_table(lines);
-        for (const std::string& failure : failures) text += fmt::format("\n- {}", failure);
-        if (!failures.empty()) text += "\n";
-        const auto corner = reference ? reference : reference_point(points_of(scenario));
-        if (!corner) return;
-        text += fmt::format(
-            "\nHypervolume of {} pixel error and frame time, of the rectangle up to "
-            "{:.3f} px and {:.3f} ms{}:\n\n",
-            name_of(metric), corner->error, corner->cost,
-            reference ? "" : " (a tenth beyond the worst point)");
-        std::map<std::string, std::vector<TradePoint>> methods;
-        for (const TradeRow& row : scenario) methods[row.method].push_back(row.point);
-        std::vector<std::vector<std::string>> volumes = {{"method", "hypervolume"}};
-        for (const MethodTrade& trade : method_trades(methods, *corner)) {
-            volumes.push_back({trade.method, fmt::format("{:.4f}", trade.hypervolume)});
-        }
-        text += aligned_table(volumes);
+        text += (text.empty() ? "" : "\n") + scenario_text(scenario, metric);
+    });
+    return text;
+}
+
+std::string trade_text_with_hypervolumes(const std::vector<TradeRow>& rows,
+                                         results::ErrorMetric metric,
+                                         const std::optional<TradePoint>& reference) {
+    std::string text;
+    each_scenario(rows, [&](std::span<const TradeRow> scenario) {
+        text += (text.empty() ? "" : "\n") + scenario_text(scenario, metric) +
+                hypervolume_text(scenario, metric, reference);
     });
     return text;
 }

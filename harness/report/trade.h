@@ -90,9 +90,15 @@ struct TradeRow {
 /// Absent figures are null.
 [[nodiscard]] Json::Value to_json(const std::vector<TradeRow>& rows);
 
-/// Markdown, readable in a terminal: one table a scenario, and below it each method's hypervolume
-/// and that of all, against `reference` or each scenario's own, which is stated.
-[[nodiscard]] std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric,
-                                     const std::optional<TradePoint>& reference);
+/// Markdown, readable in a terminal: one table a scenario, and below it what did not end well.
+[[nodiscard]] std::string trade_text(const std::vector<TradeRow>& rows,
+                                     results::ErrorMetric metric);
+
+/// The same, and below each table each method's hypervolume and that of all, against `reference` or
+/// each scenario's own, which is stated. Of methods that have several settings each: that of one
+/// setting alone says no more than its row.
+[[nodiscard]] std::string trade_text_with_hypervolumes(const std::vector<TradeRow>& rows,
+                                                       results::ErrorMetric metric,
+                                                       const std::optional<TradePoint>& reference);
 
 }  // namespace lodbench::report

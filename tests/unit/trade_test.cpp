@@ -253,10 +253,14 @@ TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario
     EXPECT_FALSE(rows[3].on_front);
     EXPECT_THAT(rows[3].failures, ElementsAre("failed (repetition 0): out of luck"));
     EXPECT_TRUE(rows[4].on_front) << "another scenario, another front";
-    const std::string text = trade_text(rows, results::ErrorMetric::p999, TradePoint{40, 10});
+    const std::string text =
+        trade_text_with_hypervolumes(rows, results::ErrorMetric::p999, TradePoint{40, 10});
     EXPECT_THAT(text, HasSubstr("out of luck"));
     // (12, 4) and (30, 1) of 40 x 10: 28 x 6 and 10 x 3.
     EXPECT_THAT(text, HasSubstr("| m      |      0.4950 |"));
+    const std::string table = trade_text(rows, results::ErrorMetric::p999);
+    EXPECT_THAT(table, HasSubstr("out of luck"));
+    EXPECT_THAT(table, testing::Not(HasSubstr("ypervolume")));
     const auto largest = trade_rows(cells, {}, results::ErrorMetric::max, 1);
     EXPECT_EQ(largest[1].error, kInfinity);
     EXPECT_FALSE(largest[1].on_front) << "uncovered ground is no error to trade";
