@@ -167,7 +167,8 @@ void add_match(CLI::App& app, int& status) {
         ->check(CLI::Range(2, 100));
     options->add_to(*command);
     options->add_resume(*command, "goes on with what was begun in --out by the same command");
-    command->callback([options, &status] { status = match(*options); });
+    command->callback(
+        [options, &status] { status = options->interruptibly([&] { return match(*options); }); });
 }
 
 }  // namespace lodbench::cli

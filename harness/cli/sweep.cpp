@@ -146,7 +146,8 @@ void add_sweep(CLI::App& app, int& status) {
             "corner of the hypervolume, so that sweeps compare; else a tenth beyond the worst "
             "point")
         ->type_name("PX,MS");
-    command->callback([options, &status] { status = sweep(*options); });
+    command->callback(
+        [options, &status] { status = options->interruptibly([&] { return sweep(*options); }); });
 }
 
 }  // namespace lodbench::cli
