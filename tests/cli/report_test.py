@@ -197,6 +197,22 @@ class Report(unittest.TestCase):
         page, _ = self.make(write_folder(self.root / "plain", [cell("a__r0"), cell("b__r0", method="b")]))
         self.assertEqual(page.rows("hypervolume"), [])
 
+    def test_points_carry_the_value_of_their_knob(self):
+        cells = [cell(f"m{tau}", method="m", params={"tau": tau}, time=10 / tau, error=tau) for tau in (0.5, 2)]
+        cells += [cell(f"two{i}", method="two", params={"a": i, "b": i}, time=20 + i) for i in (3, 4)]
+        page, text = self.make(write_folder(self.root / "run", cells))
+        marks = [m for p in page.data()["plots"] if p["id"] == "set1-trade-time" for s in p["series"] for m in s["marks"]]
+        self.assertEqual({m[2] for m in marks if len(m) > 2}, {"m tau=0.5", "m tau=2", "two a=3 b=3", "two a=4 b=4"})
+        svg = text[text.index('aria-label="Error against frame time'):]
+        svg = svg[:svg.index("</svg>")]
+        self.assertEqual(set(re.findall(r'<text class="value[^>]*>([^<]+)</text>', svg)), {"0.5", "2", "a=3 b=3", "a=4 b=4"})
+        for name in ("m tau=0.5", "two a=4 b=4"):
+            self.assertIn(f"<title>{name}: ", svg)
+        matched = [searched("m", probes=[(1, 2)], taken=1)]
+        page, text = self.make(write_folder(self.root / "matched", [cell("m", method="m", params={"tau": 1})],
+                                            match=match(matched)))
+        self.assertIn("<title>m tau=1: ", text[text.index('aria-label="Error against frame time'):])
+
     def test_a_csv_field_is_no_formula_and_numbers_stay_numbers(self):
         failures = ["=1+1", "+cmd", "-2+3", "@SUM(A1)", "-1.5", "+2", "-"]
         methods = [searched(f"m{i}", failure=text) for i, text in enumerate(failures)]

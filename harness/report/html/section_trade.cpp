@@ -48,6 +48,25 @@ bool spreads(const std::vector<TradePoint>& points) {
     return ratio >= 8;
 }
 
+constexpr std::size_t kMostValues = 40;  // written beside the points: more would hide each other
+
+/// "tau=2"; of a method with one setting the knob's value that `match` took, where it did.
+std::string setting_in_words(const ResultSet& set, const results::CellGroup& group) {
+    if (!group.setting.empty() || !set.folder->match) return group.setting;
+    for (const results::MatchRecord::Method& method : set.folder->match->methods) {
+        if (method.method != group.method || !method.knob || !method.knob_value) continue;
+        return fmt::format("{}={:.6g}", *method.knob, *method.knob_value);
+    }
+    return {};
+}
+
+/// Of one parameter its value alone.
+std::string value_of(const std::string& setting) {
+    const std::size_t equals = setting.find('=');
+    const bool one = equals != setting.npos && setting.find('=', equals + 1) == setting.npos;
+    return one ? setting.substr(equals + 1) : setting;
+}
+
 Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) {
     std::vector<TradePoint> points;
     std::size_t infinite = 0;
@@ -83,7 +102,9 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
         series.name = series.toggle = group.method;
         series.color = data.color_of(group);
         Mark mark{points[i].cost, points[i].error};
-        mark.label = group.label;
+        const std::string setting = setting_in_words(set, group);
+        mark.label = group.method + (setting.empty() ? "" : " " + setting);
+        if (set.groups.size() <= kMostValues) mark.value = value_of(setting);
         mark.ringed = std::ranges::find(front, i) != front.end();
         series.marks.push_back(std::move(mark));
     }
