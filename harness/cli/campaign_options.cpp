@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <sstream>
 
 #include "api/error.h"
 #include "base/console.h"
 #include "base/files.h"
+#include "base/interrupts.h"
 #include "cli/options.h"
 #include "report/summary.h"
+#include "run/exit_status.h"
+#include "run/supervisor.h"
 
 namespace lodbench::cli {
 
@@ -20,12 +24,37 @@ namespace {
 
 const std::string kClearLine = "\r\033[K";
 
-/// As it was typed, quoting apart.
-std::string command_line() {
-    std::string text = base::read_text("/proc/self/cmdline");
-    while (!text.empty() && text.back() == '\0') text.pop_back();
-    std::ranges::replace(text, '\0', ' ');
-    return text;
+/// As they were typed.
+std::vector<std::string> command_words() {
+    std::vector<std::string> words;
+    std::istringstream text(base::read_text("/proc/self/cmdline"));
+    for (std::string word; std::getline(text, word, '\0');) words.push_back(word);
+    return words;
+}
+
+/// As a shell reads it back.
+std::string shell_word(const std::string& word) {
+    constexpr const char* kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    if (!word.empty() && word.find_first_not_of(kPlain) == word.npos) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+/// Of a run or a search: a finished cell is a line, a torn one is none.
+std::ptrdiff_t finished_cells(const std::filesystem::path& out) {
+    std::ptrdiff_t count = 0;
+    const auto add = [&count](const std::filesystem::path& folder) {
+        const std::filesystem::path file = folder / "cells.jsonl";
+        if (std::filesystem::exists(file)) count += std::ranges::count(base::read_text(file), '\n');
+    };
+    add(out);
+    std::error_code none;
+    for (const auto& probe : std::filesystem::directory_iterator(out / "search", none)) {
+        add(probe.path());
+    }
+    return count;
 }
 
 /// A folder that this call made: runs that start in the same second get one each.
@@ -50,9 +79,10 @@ void CampaignOptions::add_to(CLI::App& command) {
                  "method to fly; none: as the scenario says");
     add_repeated(command, "--set", request.settings,
                  "METHOD.PARAMETER=VALUE[,VALUE...]; several values are swept");
-    command.add_option("--out,-o", request.out,
-                       "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
-                       "where that is taken");
+    out_option_ = command.add_option(
+        "--out,-o", request.out,
+        "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
+        "where that is taken");
     add_plugin_dirs(command, request.plugin_dirs);
     command.add_option("--frames", request.overrides.frames, "frames of the flight")
         ->check(CLI::Range(1, 1000000));
@@ -76,8 +106,25 @@ void CampaignOptions::require_folder_to_resume() const {
 
 void CampaignOptions::finish() {
     if (*seed_option_) request.overrides.seed = seed_;
-    request.command_line = command_line();
+    request.command_line = fmt::format("{}", fmt::join(command_words(), " "));
     if (request.out.empty()) request.out = made_ = make_default_out();
+}
+
+int CampaignOptions::interruptibly(const std::function<int()>& command) const {
+    base::heed_interrupts();
+    try {
+        return command();
+    } catch (const run::Interrupted&) {
+        std::string again;
+        for (const std::string& word : command_words()) again += shell_word(word) + " ";
+        if (!request.resume) again += "--resume ";
+        if (out_option_->empty()) again += "--out " + shell_word(request.out.string());
+        const std::ptrdiff_t kept = finished_cells(request.out);
+        base::tell("lodbench: interrupted; {} finished cell{} {} kept in {}, and this goes on:\n{}",
+                   kept, kept == 1 ? "" : "s", kept == 1 ? "is" : "are", request.out.string(),
+                   again);
+        return run::kCellFailed;
+    }
 }
 
 CampaignOptions::~CampaignOptions() {
@@ -129,6 +176,11 @@ std::string Progress::time_left(std::size_t cells, double fraction) const {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
     const auto seconds = std::int64_t(std::ceil(elapsed / done * (double(cells) - fraction)));
     return fmt::format(", {}:{:02} left", seconds / 60, seconds % 60);
+}
+
+std::string results_lines(const std::filesystem::path& out) {
+    return fmt::format("results   {}\nreport    lodbench report {}\n", out.string(),
+                       shell_word(out.string()));
 }
 
 Json::Value to_json(const run::CampaignOutcome& outcome) {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 
@@ -34,10 +35,14 @@ public:
     /// Once the command line is read: seed, command line and, where none is named, the folder,
     /// which is made. Throws EnvironmentError.
     void finish();
+    /// Runs `command` so that Ctrl-C ends it in good order: the cell that is flown is given up, and
+    /// said are, on standard error, what is kept and the command that goes on. Exit status.
+    [[nodiscard]] int interruptibly(const std::function<int()>& command) const;
 
 private:
     std::uint64_t seed_ = 0;
     CLI::Option* seed_option_ = nullptr;
+    CLI::Option* out_option_ = nullptr;
     std::filesystem::path made_;
 };
 
@@ -64,6 +69,9 @@ private:
     Clock::time_point drawn_;
     std::size_t finished_ = 0;
 };
+
+/// The last lines of a comparison: where its results are, and the command that draws them.
+[[nodiscard]] std::string results_lines(const std::filesystem::path& out);
 
 /// An outcome as --json prints it.
 [[nodiscard]] Json::Value to_json(const run::CampaignOutcome& outcome);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -60,11 +61,31 @@ std::string number_text(const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : "-";
 }
 
+/// What the outcomes that are no "met" mean, of those that occur.
+std::string outcome_remarks(const std::vector<run::MatchedMethod>& methods) {
+    constexpr std::pair<run::SearchOutcome, const char*> kMeanings[] = {
+        {run::SearchOutcome::unreachable,
+         "all that was measured lies on one side of the target, up to the end of the knob's range, "
+         "the last value that could be flown or the last probe (--probes)"},
+        {run::SearchOutcome::between,
+         "values of the knob lie on both sides of the target and none within the tolerance: it "
+         "jumps there, a value could not be flown, or the probes ran out (--probes)"}};
+    std::string remarks;
+    for (const auto& [outcome, meaning] : kMeanings) {
+        const bool occurs = std::ranges::any_of(methods, [&](const run::MatchedMethod& method) {
+            return method.knob && method.search.outcome == outcome;
+        });
+        if (occurs)
+            remarks += fmt::format("- {}: {}; shown is the nearest\n", name_of(outcome), meaning);
+    }
+    return remarks;
+}
+
 /// What was found, a line a method.
 std::string search_text(const std::vector<run::MatchedMethod>& methods) {
     std::vector<std::vector<std::string>> lines = {
         {"method", "knob", "achieved", "outcome", "probes"}};
-    std::string remarks;
+    std::string remarks = outcome_remarks(methods);
     for (const run::MatchedMethod& method : methods) {
         const auto& best = method.search.best;
         const std::string knob = !method.knob ? "exact: none"
@@ -106,7 +127,7 @@ int match(Options& options) {
         report::trade_rows(outcome.campaign.cells, knobs, target.metric, outcome.campaign.seed);
     const std::string text =
         fmt::format("{}, within {:.3g} %\n\n{}\n{}", target.words(), 100 * target.tolerance,
-                    search_text(outcome.methods), report::trade_text(rows, target.metric, {}));
+                    search_text(outcome.methods), report::trade_text(rows, target.metric));
     base::write_whole(outcome.campaign.out / "match.md", "# lodbench match\n\n" + text);
     if (options.json) {
         Json::Value object = to_json(outcome.campaign);
@@ -114,7 +135,7 @@ int match(Options& options) {
         object["trade"] = report::to_json(rows);
         base::print("{}\n", results::to_text(object));
     } else {
-        base::print("\n{}\nresults   {}\n", text, outcome.campaign.out.string());
+        base::print("\n{}\n{}", text, results_lines(outcome.campaign.out));
     }
     if (!outcome.campaign.error.empty()) {
         base::tell("lodbench: {}", outcome.campaign.error);
@@ -146,7 +167,8 @@ void add_match(CLI::App& app, int& status) {
         ->check(CLI::Range(2, 100));
     options->add_to(*command);
     options->add_resume(*command, "goes on with what was begun in --out by the same command");
-    command->callback([options, &status] { status = match(*options); });
+    command->callback(
+        [options, &status] { status = options->interruptibly([&] { return match(*options); }); });
 }
 
 }  // namespace lodbench::cli

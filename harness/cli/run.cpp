@@ -63,7 +63,8 @@ void add_run(CLI::App& app, int& status) {
     command->add_flag("--no-truth", options->no_truth,
                       "only times and counts: leaves out screen error, cracks and popping");
     options->add_resume(*command, "finish what is missing in --out, as the run began");
-    command->callback([options, &status] { status = fly(*options); });
+    command->callback(
+        [options, &status] { status = options->interruptibly([&] { return fly(*options); }); });
 }
 
 }  // namespace lodbench::cli

@@ -107,14 +107,14 @@ int sweep(Options& options) {
     const run::CampaignOutcome outcome =
         run_campaign(options.request, run::executable_path(), progress);
     const auto rows = report::trade_rows(outcome.cells, knobs, metric, outcome.seed);
-    const std::string text = report::trade_text(rows, metric, options.reference);
+    const std::string text = report::trade_text_with_hypervolumes(rows, metric, options.reference);
     base::write_whole(outcome.out / "trade.md", "# lodbench sweep\n\n" + text);
     if (options.json) {
         Json::Value object = to_json(outcome);
         object["trade"] = report::to_json(rows);
         base::print("{}\n", results::to_text(object));
     } else {
-        base::print("\n{}\nresults   {}\n", text, outcome.out.string());
+        base::print("\n{}\n{}", text, results_lines(outcome.out));
     }
     if (!outcome.error.empty()) base::tell("lodbench: {}", outcome.error);
     return outcome.exit_status();
@@ -146,7 +146,8 @@ void add_sweep(CLI::App& app, int& status) {
             "corner of the hypervolume, so that sweeps compare; else a tenth beyond the worst "
             "point")
         ->type_name("PX,MS");
-    command->callback([options, &status] { status = sweep(*options); });
+    command->callback(
+        [options, &status] { status = options->interruptibly([&] { return sweep(*options); }); });
 }
 
 }  // namespace lodbench::cli

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "api/error.h"
 #include "report/aligned_table.h"
@@ -18,6 +19,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool finite(const TradePoint& point) {
     return std::isfinite(point.cost) && std::isfinite(point.error);
+}
+
+double rounded_error(const TradePoint& point) {
+    return std::round(point.error / kErrorResolution);
+}
+
+double least(const TradePoint& point) {
+    return point.cost - point.below;
+}
+
+double most(const TradePoint& point) {
+    return point.cost + point.above;
 }
 
 /// The rows of one scenario after the other.
@@ -41,25 +54,74 @@ std::string text_of(const std::optional<double>& value, const char* format, doub
     return value ? fmt::format(fmt::runtime(format), *value / unit) : "-";
 }
 
+/// One scenario's table, its heading above it and its failures below.
+std::string scenario_text(std::span<const TradeRow> rows, results::ErrorMetric metric) {
+    std::string text = fmt::format("## {}\n\n", rows.front().scenario);
+    std::vector<std::vector<std::string>> lines = {{"method", std::string(name_of(metric)) + " px",
+                                                    "frame ms (range)", "triangles", "GPU MiB",
+                                                    "prepare s", "front"}};
+    std::string failures;
+    for (const TradeRow& row : rows) {
+        lines.push_back({row.label, text_of(row.error, "{:.3f}"),
+                         row.frame_ms ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
+                                                    row.frame_ms->low, row.frame_ms->high)
+                                      : "-",
+                         text_of(row.triangles, "{:.0f}"),
+                         text_of(row.gpu_bytes, "{:.1f}", results::kMebibyte),
+                         text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
+        for (const std::string& failure : row.failures) {
+            failures += fmt::format("\n- {}, {}", row.label, failure);
+        }
+    }
+    text += aligned_table(lines) + failures;
+    if (!failures.empty()) text += "\n";
+    return text;
+}
+
+std::string hypervolume_text(std::span<const TradeRow> rows, results::ErrorMetric metric,
+                             const std::optional<TradePoint>& reference) {
+    const auto corner = reference ? reference : reference_point(points_of(rows));
+    if (!corner) return {};
+    std::map<std::string, std::vector<TradePoint>> methods;
+    for (const TradeRow& row : rows) methods[row.method].push_back(row.point);
+    std::vector<std::vector<std::string>> volumes = {{"method", "hypervolume"}};
+    for (const MethodTrade& trade : method_trades(methods, *corner)) {
+        volumes.push_back({trade.method, fmt::format("{:.4f}", trade.hypervolume)});
+    }
+    return fmt::format(
+               "\nHypervolume of {} pixel error and frame time, of the rectangle up to {:.3f} px "
+               "and {:.3f} ms{}:\n\n",
+               name_of(metric), corner->error, corner->cost,
+               reference ? "" : " (a tenth beyond the worst point)") +
+           aligned_table(volumes);
+}
+
 }  // namespace
+
+bool beats(const TradePoint& a, const TradePoint& b) {
+    if (!finite(a) || !finite(b)) return false;
+    const double error_a = rounded_error(a);
+    const double error_b = rounded_error(b);
+    if (error_a > error_b || most(b) < least(a)) return false;
+    return error_a < error_b || most(a) < least(b);
+}
 
 std::vector<std::size_t> pareto_front(std::span<const TradePoint> points) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (finite(points[i])) order.push_back(i);
     }
-    std::ranges::sort(
-        order, {}, [&](std::size_t i) { return std::tuple(points[i].cost, points[i].error, i); });
+    // Whatever beats a point comes before it.
+    std::ranges::sort(order, {}, [&](std::size_t i) {
+        return std::pair(rounded_error(points[i]), most(points[i]));
+    });
     std::vector<std::size_t> front;
-    double least = kInfinity;
     for (const std::size_t i : order) {
-        const TradePoint& point = points[i];
-        const bool equal = !front.empty() && points[front.back()].cost == point.cost &&
-                           points[front.back()].error == point.error;
-        if (!equal && point.error >= least) continue;
-        least = point.error;
-        front.push_back(i);
+        if (std::ranges::none_of(front, [&](std::size_t j) { return beats(points[j], points[i]); }))
+            front.push_back(i);
     }
+    std::ranges::sort(
+        front, {}, [&](std::size_t i) { return std::tuple(points[i].cost, points[i].error, i); });
     return front;
 }
 
@@ -75,18 +137,32 @@ double hypervolume(std::span<const TradePoint> points, const TradePoint& referen
             within.push_back(point);
         }
     }
+    std::ranges::sort(within, {}, &TradePoint::cost);
     double area = 0;
     double ceiling = reference.error;
-    for (const std::size_t i : pareto_front(within)) {
-        area += (reference.cost - within[i].cost) * (ceiling - within[i].error);
-        ceiling = within[i].error;
+    for (const TradePoint& point : within) {
+        area += (reference.cost - point.cost) * std::max(ceiling - point.error, 0.0);
+        ceiling = std::min(ceiling, point.error);
     }
     return area / (reference.cost * reference.error);
 }
 
-TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric) {
-    const auto frame_ms = measure::median(results::numbers_of(group.good, "frame_ms", "mean"));
-    return {frame_ms.value_or(kInfinity), results::pixel_error(group, metric).value_or(kInfinity)};
+TradePoint trade_point(std::span<const double> costs, std::optional<double> error,
+                       std::uint64_t seed) {
+    TradePoint point{kInfinity, error.value_or(kInfinity)};
+    const auto interval = measure::run_interval(costs, seed);
+    if (!interval) return point;
+    point.cost = interval->centre;
+    if (!std::isfinite(interval->low) || !std::isfinite(interval->high)) return point;
+    point.below = std::max(interval->centre - interval->low, 0.0);
+    point.above = std::max(interval->high - interval->centre, 0.0);
+    return point;
+}
+
+TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric,
+                       std::uint64_t seed) {
+    return trade_point(results::numbers_of(group.good, "frame_ms", "mean"),
+                       results::pixel_error(group, metric), seed);
 }
 
 std::optional<TradePoint> reference_point(std::span<const TradePoint> points) {
@@ -133,7 +209,7 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
                 row.knob = results::read_number_or_inf((*cell)["params"][knob->second]);
         }
         row.error = results::pixel_error(group, metric);
-        row.point = trade_point(group, metric);
+        row.point = trade_point(group, metric, seed);
         row.frame_ms =
             measure::run_interval(results::numbers_of(group.good, "frame_ms", "mean"), seed);
         row.triangles = measure::median(results::numbers_of(group.good, "triangles", "mean"));
@@ -169,45 +245,21 @@ Json::Value to_json(const std::vector<TradeRow>& rows) {
     return array;
 }
 
-std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric,
-                       const std::optional<TradePoint>& reference) {
+std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric) {
     std::string text;
     each_scenario(rows, [&](std::span<const TradeRow> scenario) {
-        text += fmt::format("{}## {}\n\n", text.empty() ? "" : "\n", scenario.front().scenario);
-        std::vector<std::vector<std::string>> lines = {
-            {"method", std::string(name_of(metric)) + " px", "frame ms (range)", "triangles",
-             "GPU MiB", "prepare s", "front"}};
-        std::vector<std::string> failures;
-        for (const TradeRow& row : scenario) {
-            lines.push_back({row.label, text_of(row.error, "{:.3f}"),
-                             row.frame_ms
-                                 ? fmt::format("{:.3f} ({:.3f}..{:.3f})", row.frame_ms->centre,
-                                               row.frame_ms->low, row.frame_ms->high)
-                                 : "-",
-                             text_of(row.triangles, "{:.0f}"),
-                             text_of(row.gpu_bytes, "{:.1f}", results::kMebibyte),
-                             text_of(row.prepare_s, "{:.3f}"), row.on_front ? "*" : ""});
-            for (const std::string& failure : row.failures) {
-                failures.push_back(row.label + ", " + failure);
-            }
-        }
-        text += aligned_table(lines);
-        for (const std::string& failure : failures) text += fmt::format("\n- {}", failure);
-        if (!failures.empty()) text += "\n";
-        const auto corner = reference ? reference : reference_point(points_of(scenario));
-        if (!corner) return;
-        text += fmt::format(
-            "\nHypervolume of {} pixel error and frame time, of the rectangle up to "
-            "{:.3f} px and {:.3f} ms{}:\n\n",
-            name_of(metric), corner->error, corner->cost,
-            reference ? "" : " (a tenth beyond the worst point)");
-        std::map<std::string, std::vector<TradePoint>> methods;
-        for (const TradeRow& row : scenario) methods[row.method].push_back(row.point);
-        std::vector<std::vector<std::string>> volumes = {{"method", "hypervolume"}};
-        for (const MethodTrade& trade : method_trades(methods, *corner)) {
-            volumes.push_back({trade.method, fmt::format("{:.4f}", trade.hypervolume)});
-        }
-        text += aligned_table(volumes);
+        text += (text.empty() ? "" : "\n") + scenario_text(scenario, metric);
+    });
+    return text;
+}
+
+std::string trade_text_with_hypervolumes(const std::vector<TradeRow>& rows,
+                                         results::ErrorMetric metric,
+                                         const std::optional<TradePoint>& reference) {
+    std::string text;
+    each_scenario(rows, [&](std::span<const TradeRow> scenario) {
+        text += (text.empty() ? "" : "\n") + scenario_text(scenario, metric) +
+                hypervolume_text(scenario, metric, reference);
     });
     return text;
 }

@@ -22,10 +22,25 @@ namespace lodbench::report {
 struct TradePoint {
     double cost = 0;
     double error = 0;
+    /// How far the interval of the repetitions reaches below and above `cost`, at least 0.
+    double below = 0, above = 0;
 };
 
-/// Indices of the points than which no other is better in one and at least as good in the other, by
-/// rising cost, then by index. Equal points are all on it; points that are not finite never are.
+/// Pixels: errors are rounded to multiples of it before they are compared.
+inline constexpr double kErrorResolution = 1.0 / 64;
+
+/// Whether `a` is better than `b` by more than can be measured in one, and not worse by more than
+/// that in the other. Errors differ where, rounded to kErrorResolution, they are not equal; costs
+/// differ where their intervals have no point in common. False where one is not finite. No chain of
+/// points, each better than the next, comes back to its begin; but it may hold of a and b, and of b
+/// and c, and not of a and c: a row of overlapping intervals leads as far as one likes.
+[[nodiscard]] bool beats(const TradePoint& a, const TradePoint& b);
+
+/// Indices of the finite points that no point of the front beats, by rising cost, error and index.
+/// There is one such set only (the kernel of a relation without cycles; von Neumann and
+/// Morgenstern 1944): no point of it beats another, each other point is beaten by one of it, and it
+/// is empty only where no point is finite. Equal points are all on it or none. Where intervals are
+/// points and errors multiples of the resolution it is what no point at all beats.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const TradePoint> points);
 
 /// The part, 0 to 1, of the rectangle from (0, 0) to `reference` in which some point is at least as
@@ -34,9 +49,12 @@ struct TradePoint {
 /// and finite.
 [[nodiscard]] double hypervolume(std::span<const TradePoint> points, const TradePoint& reference);
 
-/// Milliseconds (median over the repetitions of the mean frame time) and pixels; infinite where
-/// absent.
-[[nodiscard]] TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric);
+/// Of runs that cost so much each: their median and interval. Infinite where absent.
+[[nodiscard]] TradePoint trade_point(std::span<const double> costs, std::optional<double> error,
+                                     std::uint64_t seed);
+/// Milliseconds (mean frame time) and pixels, medians over the repetitions.
+[[nodiscard]] TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric,
+                                     std::uint64_t seed);
 
 /// A tenth worse than the worst finite point; nothing where there is none.
 [[nodiscard]] std::optional<TradePoint> reference_point(std::span<const TradePoint> points);
@@ -72,9 +90,15 @@ struct TradeRow {
 /// Absent figures are null.
 [[nodiscard]] Json::Value to_json(const std::vector<TradeRow>& rows);
 
-/// Markdown, readable in a terminal: one table a scenario, and below it each method's hypervolume
-/// and that of all, against `reference` or each scenario's own, which is stated.
-[[nodiscard]] std::string trade_text(const std::vector<TradeRow>& rows, results::ErrorMetric metric,
-                                     const std::optional<TradePoint>& reference);
+/// Markdown, readable in a terminal: one table a scenario, and below it what did not end well.
+[[nodiscard]] std::string trade_text(const std::vector<TradeRow>& rows,
+                                     results::ErrorMetric metric);
+
+/// The same, and below each table each method's hypervolume and that of all, against `reference` or
+/// each scenario's own, which is stated. Of methods that have several settings each: that of one
+/// setting alone says no more than its row.
+[[nodiscard]] std::string trade_text_with_hypervolumes(const std::vector<TradeRow>& rows,
+                                                       results::ErrorMetric metric,
+                                                       const std::optional<TradePoint>& reference);
 
 }  // namespace lodbench::report

@@ -152,6 +152,8 @@ private:
     void discarding_what_is_refused(const Work& work) {
         try {
             work();
+        } catch (const Interrupted&) {
+            throw;  // nothing is wrong with it: it goes on as it was planned
         } catch (const std::exception&) {
             if (nothing_is_kept()) folder_.discard();
             throw;

@@ -45,7 +45,8 @@ struct CampaignOutcome {
 
 /// Plans, or with `resume` takes up, a campaign and flies what is missing. `program` is what a
 /// cell's child runs. Throws InputError or EnvironmentError before the first cell; after it,
-/// whatever stops the campaign is in the outcome, and what was finished stays.
+/// whatever stops the campaign is in the outcome, and what was finished stays. Throws Interrupted
+/// at any moment: what is in the folder can be resumed.
 [[nodiscard]] CampaignOutcome run_campaign(const RunRequest& request,
                                            const std::filesystem::path& program,
                                            CampaignObserver& observer);

@@ -19,6 +19,7 @@
 #include "api/error.h"
 #include "base/child_process.h"
 #include "base/console.h"
+#include "base/interrupts.h"
 #include "base/process_tree.h"
 #include "run/last_words.h"
 #include "run/shared_signs.h"
@@ -183,6 +184,7 @@ int become_cell(const std::filesystem::path& program, int spec, int signs, int r
 results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
                              const std::filesystem::path& program,
                              const std::filesystem::path& log_path, const CellProgress& progress) {
+    if (base::interrupted()) throw Interrupted();
     const base::FileDescriptor spec_file = base::memory_file("lodbench-spec");
     const base::FileDescriptor signs_file = base::memory_file("lodbench-signs");
     const base::FileDescriptor result_file = base::memory_file("lodbench-result");
@@ -217,6 +219,10 @@ results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     std::optional<SteadyClock::time_point> finished;
     while (!child.wait(kWatchInterval, reading.number())) {
         log.drain(reading.number());
+        if (base::interrupted()) {
+            child.end();
+            throw Interrupted();
+        }
         const auto now = SteadyClock::now();
         const std::uint64_t resident = memory.take(child, now);
         peak = std::max(peak, resident);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <stdexcept>
 
 #include "run/cell.h"
 
@@ -19,9 +20,14 @@ struct CellLimits {
 /// Where a cell stands, for a line of progress.
 using CellProgress = std::function<void(int frames_done, int frames_total)>;
 
+/// base::interrupted() became true: the cell that ran was ended and left nothing.
+struct Interrupted : std::runtime_error {
+    Interrupted() : std::runtime_error("interrupted") {}
+};
+
 /// Runs `program cell` for the specification and waits. What the child prints goes to `log`, cut
 /// after 1 MiB. Whatever the child does, a result comes back; EnvironmentError only when none could
-/// be started.
+/// be started, Interrupted when the user ends it.
 [[nodiscard]] results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
                                            const std::filesystem::path& program,
                                            const std::filesystem::path& log,

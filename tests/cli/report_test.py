@@ -77,7 +77,7 @@ class Report(unittest.TestCase):
     def test_the_tables_of_a_scenario_are_the_medians_of_its_cells(self):
         cells = self.cells()
         page, _ = self.make(write_folder(self.root / "run", cells))
-        greatest = {"frame_ms.max", "peak_rss_bytes"}
+        greatest = {"frame_ms.max", "select_ms.max", "submit_ms.max", "gpu_ms.max", "cpu_ms.max", "peak_rss_bytes"}
         compared = 0
         for table in ("summary", "times", "resources", "bounds", "picture", "economy"):
             rows = page.rows(table, "demo")
@@ -93,7 +93,7 @@ class Report(unittest.TestCase):
                     if not numbers:
                         self.assertEqual(value, "", (label, field))
                         continue
-                    pick = max if table == "summary" and field in greatest else statistics.median
+                    pick = max if field in greatest else statistics.median
                     self.assertEqual(float(value), pick(numbers), (label, field))
                     compared += 1
         self.assertGreater(compared, 100)
@@ -114,8 +114,46 @@ class Report(unittest.TestCase):
                 for field, (text, value) in other.items():
                     if value is not None:
                         self.assertEqual(row[field], value, (name, field))
+                    elif field == "method":
+                        self.assertEqual(text, row[field] + (f" tau={row['tau']}" if row.get("tau") else ""), name)
                     elif field not in ("front", "fps.interval"):
                         self.assertEqual(row[field], text, (name, field))
+
+    def read_csv(self, name):
+        with open(self.root / "csv" / f"{name}.csv", newline="") as stream:
+            return list(csv.DictReader(stream))
+
+    def test_csv_files_are_tidy(self):
+        def settings(folder, taus, repetitions=3):
+            return write_folder(self.root / folder, [
+                cell(f"m{tau}{r}", method="m", params={"tau": tau, "fixed": 7, "status": f"s{tau}"}, time=10 / tau + r,
+                     repetition=r) for tau in taus for r in range(repetitions)]
+                + [cell("plain", method="plain", params={"fixed": 8})])
+        one, many = settings("one", [1]), settings("many", [0.5, 10])
+        self.make(one, many, more=["--csv", self.root / "csv"])
+        for table in ("summary", "times", "resources", "bounds", "picture", "economy"):
+            rows = self.read_csv(table)
+            self.assertEqual(list(rows[0])[:3], ["results", "scenario", "method"], table)
+            self.assertNotIn("fixed", rows[0])
+            self.assertEqual([(row["results"], row["scenario"], row["method"], row["tau"], row["status"]) for row in rows],
+                             [("one", "demo", "m", "1", "s1"), ("one", "demo", "plain", "", ""),
+                              ("many", "demo", "m", "0.5", "s0.5"), ("many", "demo", "m", "10", "s10"),
+                              ("many", "demo", "plain", "", "")], table)
+        header = list(self.read_csv("cells")[0])
+        self.assertEqual(len(header), len(set(header)))
+        self.assertEqual(header[:7], ["results", "scenario", "method", "params.status", "tau", "cell", "params"])
+        # One name, one statistic: of the same setting it is the same wherever it stands.
+        seen = {}
+        for table in ("summary", "times", "resources", "bounds", "picture", "economy"):
+            for row in self.read_csv(table):
+                for field, value in row.items():
+                    key = (row["results"], row["method"], row["tau"], field)
+                    self.assertEqual(seen.setdefault(key, value), value, (table, key))
+                    if field not in ("results", "scenario", "method", "status", "front"):
+                        self.assertTrue(value == "" or not math.isnan(float(value)), (table, key))
+        self.assertEqual(float(seen["one", "m", "1", "frame_ms.max"]), 3 * 12)
+        self.assertEqual(float(seen["one", "m", "1", "fps.high"]), 100)
+        self.assertEqual(float(seen["one", "m", "1", "fps.low"]), 1000 / 12)
 
     def test_marks_the_front_of_speed_and_accuracy(self):
         page, _ = self.make(write_folder(self.root / "run", [
@@ -158,6 +196,22 @@ class Report(unittest.TestCase):
                          {"swift tau=1", "late", "near tau=1"})
         page, _ = self.make(write_folder(self.root / "plain", [cell("a__r0"), cell("b__r0", method="b")]))
         self.assertEqual(page.rows("hypervolume"), [])
+
+    def test_points_carry_the_value_of_their_knob(self):
+        cells = [cell(f"m{tau}", method="m", params={"tau": tau}, time=10 / tau, error=tau) for tau in (0.5, 2)]
+        cells += [cell(f"two{i}", method="two", params={"a": i, "b": i}, time=20 + i) for i in (3, 4)]
+        page, text = self.make(write_folder(self.root / "run", cells))
+        marks = [m for p in page.data()["plots"] if p["id"] == "set1-trade-time" for s in p["series"] for m in s["marks"]]
+        self.assertEqual({m[2] for m in marks if len(m) > 2}, {"m tau=0.5", "m tau=2", "two a=3 b=3", "two a=4 b=4"})
+        svg = text[text.index('aria-label="Error against frame time'):]
+        svg = svg[:svg.index("</svg>")]
+        self.assertEqual(set(re.findall(r'<text class="value[^>]*>([^<]+)</text>', svg)), {"0.5", "2", "a=3 b=3", "a=4 b=4"})
+        for name in ("m tau=0.5", "two a=4 b=4"):
+            self.assertIn(f"<title>{name}: ", svg)
+        matched = [searched("m", probes=[(1, 2)], taken=1)]
+        page, text = self.make(write_folder(self.root / "matched", [cell("m", method="m", params={"tau": 1})],
+                                            match=match(matched)))
+        self.assertIn("<title>m tau=1: ", text[text.index('aria-label="Error against frame time'):])
 
     def test_a_csv_field_is_no_formula_and_numbers_stay_numbers(self):
         failures = ["=1+1", "+cmd", "-2+3", "@SUM(A1)", "-1.5", "+2", "-"]

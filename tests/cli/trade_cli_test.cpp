@@ -165,6 +165,36 @@ TEST_F(Trade, match_says_what_cannot_be_reached_and_the_nearest_there_is) {
     EXPECT_THAT(errors(), HasSubstr("choose another with --out"));
 }
 
+TEST_F(Trade, match_explains_the_outcomes_that_occur_and_gives_no_hypervolume) {
+    const auto text = [&](const std::string& name, const Arguments& more) {
+        Arguments arguments = {"--method", "lindstrom", "--out", out(name)};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Finished finished = lodbench("match", arguments);
+        EXPECT_EQ(finished.status, 0) << errors();
+        EXPECT_THAT(finished.output, testing::Not(HasSubstr("ypervolume")));
+        EXPECT_THAT(finished.output, HasSubstr("report    lodbench report " + out(name) + "\n"));
+        return finished.output;
+    };
+    const std::string unreachable = "- unreachable: all that was measured lies on one side";
+    const std::string between = "- between: values of the knob lie on both sides of the target";
+    const std::string met = text("met", {"--error", "2px"});
+    EXPECT_THAT(met, testing::Not(testing::AnyOf(HasSubstr(unreachable), HasSubstr(between))));
+    EXPECT_THAT(text("far", {"--triangles", "100000000", "--probes", "3"}), HasSubstr(unreachable));
+    EXPECT_THAT(text("jump", {"--error", "2px", "--tolerance", "0.01", "--probes", "3"}),
+                HasSubstr(between));
+}
+
+TEST_F(Trade, sweep_names_the_report_but_not_in_its_json) {
+    const Arguments arguments = {"--method", "lindstrom", "--points", "1", "--out", out("a b")};
+    const Finished plain = lodbench("sweep", arguments);
+    EXPECT_EQ(plain.status, 0) << errors();
+    EXPECT_THAT(plain.output, HasSubstr("report    lodbench report '" + out("a b") + "'\n"));
+    EXPECT_THAT(plain.output, HasSubstr("Hypervolume of p999"));
+    Arguments as_json = arguments;
+    as_json.insert(as_json.end(), {"--json", "--resume"});
+    EXPECT_TRUE(json(lodbench("sweep", as_json))["trade"].isArray());
+}
+
 TEST_F(Trade, economy_compares_a_frame_with_what_would_do_at_the_same_error) {
     const Json::Value flown =
         json(lodbench("economy", {"--frame", "1", "--frame", "3", "--method", "lindstrom",

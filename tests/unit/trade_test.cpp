@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
 
 #include "api/error.h"
 #include "base/hash.h"
@@ -74,6 +77,94 @@ TEST(ParetoFront, of_many_points_is_what_the_definition_says) {
         }
         EXPECT_THAT(pareto_front(points), testing::UnorderedElementsAreArray(expected));
     }
+}
+
+TEST(ParetoFront, what_cannot_be_measured_decides_nothing) {
+    EXPECT_THAT(pareto_front(Points{{10, 0.00009868}, {10, 0.00009983}}), ElementsAre(0, 1));
+    EXPECT_THAT(pareto_front(Points{{10, 0.00009868}, {9, 0.00009983}}), ElementsAre(1))
+        << "the faster of two that err alike";
+    EXPECT_THAT(pareto_front(Points{{10, 1}, {11, 1, 2, 0.5}}), ElementsAre(0, 1))
+        << "the interval of the second reaches from 9 to 11.5";
+    EXPECT_THAT(pareto_front(Points{{10, 1}, {11, 1, 0.5, 2}}), ElementsAre(0));
+    EXPECT_THAT(pareto_front(Points{{10, 2}, {11, 1, 2, 2}}), ElementsAre(1))
+        << "nearer to the truth, and no slower as far as can be told";
+    EXPECT_THAT(pareto_front(Points{{10, 1}, {11, 1, 1, 0}}), ElementsAre(0, 1))
+        << "intervals that touch overlap";
+}
+
+TEST(ParetoFront, a_row_of_overlaps_does_not_lead_away_from_what_is_surely_faster) {
+    const Points row = {{10, 3, 1, 1}, {11.5, 2, 1, 1}, {13, 1, 1, 1}};
+    EXPECT_TRUE(beats(row[1], row[0]) && beats(row[2], row[1]) && !beats(row[2], row[0]));
+    EXPECT_THAT(pareto_front(row), ElementsAre(0, 2));
+}
+
+/// Points on and off the resolution, with intervals, equal ones, and some that were not measured.
+Points random_points(base::SplitMix64& random) {
+    Points points;
+    for (std::uint64_t i = 0, count = random.below(14); i < count; ++i) {
+        const auto step = [&](std::uint64_t steps) { return double(random.below(steps)); };
+        TradePoint point{10 + step(12) / 2, step(40) * kErrorResolution / 4, step(4) / 2,
+                         step(4) / 2};
+        if (random.below(12) == 0) point.error = kInfinity;
+        points.push_back(point);
+        if (random.below(4) == 0) points.push_back(point);
+    }
+    return points;
+}
+
+TEST(ParetoFront, of_points_with_intervals_beats_all_others_and_none_of_its_own) {
+    base::SplitMix64 random(17);
+    std::size_t decided = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const Points points = random_points(random);
+        const auto front = pareto_front(points);
+        const auto on_front = [&](std::size_t i) { return std::ranges::count(front, i) == 1; };
+        bool measured = false;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            EXPECT_FALSE(beats(points[i], points[i]));
+            const bool finite = std::isfinite(points[i].error);
+            measured = measured || finite;
+            const bool beaten = std::ranges::any_of(
+                front, [&](std::size_t j) { return beats(points[j], points[i]); });
+            EXPECT_EQ(on_front(i), finite && !beaten);
+            for (std::size_t j = 0; j < i; ++j) {
+                EXPECT_FALSE(beats(points[i], points[j]) && beats(points[j], points[i]));
+                const bool equal =
+                    std::tuple(points[i].cost, points[i].error, points[i].below, points[i].above) ==
+                    std::tuple(points[j].cost, points[j].error, points[j].below, points[j].above);
+                EXPECT_TRUE(!equal || on_front(i) == on_front(j));
+            }
+        }
+        EXPECT_EQ(front.empty(), !measured);
+        decided += points.size() - front.size();
+    }
+    EXPECT_GT(decided, 1000U);
+}
+
+TEST(ParetoFront, does_not_depend_on_the_order_of_the_points) {
+    base::SplitMix64 random(23);
+    for (int round = 0; round < 500; ++round) {
+        const Points points = random_points(random);
+        std::vector<std::size_t> order(points.size());
+        std::iota(order.begin(), order.end(), 0);
+        for (std::size_t i = order.size(); i > 1; --i)
+            std::swap(order[i - 1], order[random.below(i)]);
+        Points shuffled;
+        for (const std::size_t i : order) shuffled.push_back(points[i]);
+        std::vector<std::size_t> front;
+        for (const std::size_t i : pareto_front(shuffled)) front.push_back(order[i]);
+        EXPECT_THAT(front, testing::UnorderedElementsAreArray(pareto_front(points)));
+    }
+}
+
+TEST(TradePoint, has_the_interval_of_its_repetitions) {
+    const std::vector<double> runs = {10, 14, 11};
+    const TradePoint point = trade_point(runs, 2.0, 1);
+    EXPECT_EQ(point.cost, 11);
+    EXPECT_EQ(point.below, 1);
+    EXPECT_EQ(point.above, 3);
+    EXPECT_EQ(trade_point(std::vector<double>{}, 2.0, 1).cost, kInfinity);
+    EXPECT_EQ(trade_point(runs, std::nullopt, 1).error, kInfinity);
 }
 
 TEST(Hypervolume, of_one_point_is_its_rectangle) {
@@ -162,10 +253,14 @@ TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario
     EXPECT_FALSE(rows[3].on_front);
     EXPECT_THAT(rows[3].failures, ElementsAre("failed (repetition 0): out of luck"));
     EXPECT_TRUE(rows[4].on_front) << "another scenario, another front";
-    const std::string text = trade_text(rows, results::ErrorMetric::p999, TradePoint{40, 10});
+    const std::string text =
+        trade_text_with_hypervolumes(rows, results::ErrorMetric::p999, TradePoint{40, 10});
     EXPECT_THAT(text, HasSubstr("out of luck"));
     // (12, 4) and (30, 1) of 40 x 10: 28 x 6 and 10 x 3.
     EXPECT_THAT(text, HasSubstr("| m      |      0.4950 |"));
+    const std::string table = trade_text(rows, results::ErrorMetric::p999);
+    EXPECT_THAT(table, HasSubstr("out of luck"));
+    EXPECT_THAT(table, testing::Not(HasSubstr("ypervolume")));
     const auto largest = trade_rows(cells, {}, results::ErrorMetric::max, 1);
     EXPECT_EQ(largest[1].error, kInfinity);
     EXPECT_FALSE(largest[1].on_front) << "uncovered ground is no error to trade";

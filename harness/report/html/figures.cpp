@@ -12,6 +12,11 @@ std::string FigureColumn::field() const {
     return inner == nullptr ? key : fmt::format("{}.{}", key, inner);
 }
 
+bool FigureColumn::is_greatest() const {
+    const std::string name = field();
+    return name.ends_with("_ms.max") || name == "peak_rss_bytes";
+}
+
 void add_columns(Table& table, std::span<const FigureColumn> columns) {
     for (const FigureColumn& column : columns) {
         table.columns.push_back({column.title, column.field(), true, column.explanation});
@@ -22,9 +27,9 @@ void add_fields(std::vector<Field>& row, std::span<const FigureColumn> columns,
                 const std::vector<const Json::Value*>& objects) {
     for (const FigureColumn& column : columns) {
         const std::vector<double> values = results::numbers_of(objects, column.key, column.inner);
-        const auto value = values.empty()    ? std::nullopt
-                           : column.greatest ? std::optional(*std::ranges::max_element(values))
-                                             : measure::median(values);
+        const auto value = values.empty()         ? std::nullopt
+                           : column.is_greatest() ? std::optional(*std::ranges::max_element(values))
+                                                  : measure::median(values);
         row.push_back(number_field(value, column.digits, column.unit));
     }
 }
@@ -53,6 +58,7 @@ Table figure_table(const ResultSet& set, const char* id, const std::string& capt
     for (const results::CellGroup& group : set.groups) {
         std::vector<Field>& row = table.rows.emplace_back();
         row.push_back(text_field(group.label));
+        table.settings.push_back(setting_of(*group.cells.front()));
         add_fields(row, columns, group.good);
     }
     return table;

@@ -21,10 +21,11 @@ struct FigureColumn {
     int digits = 3;
     double unit = 1;  ///< shown is the figure over it
     const char* explanation = "";
-    bool greatest = false;  ///< over the repetitions, instead of the median
-
     /// "frame_ms.median"
     [[nodiscard]] std::string field() const;
+    /// Whether it is the greatest over the repetitions instead of the median, in every table: the
+    /// slowest frame and the most memory that ever were.
+    [[nodiscard]] bool is_greatest() const;
 };
 
 void add_columns(Table& table, std::span<const FigureColumn> columns);

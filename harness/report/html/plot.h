@@ -20,6 +20,7 @@ struct Mark {
     double low = kAbsent;  ///< of a bar: its interval
     double high = kAbsent;
     std::string label = {};  ///< what it is of, where the series does not say
+    std::string value = {};  ///< what is written beside the point in the static SVG
     bool ringed = false;     ///< on the Pareto front, or what was taken
 };
 

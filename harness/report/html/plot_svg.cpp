@@ -94,6 +94,27 @@ Axis::Scale scale_of(const Plot& plot) {
     return plot.logarithmic ? Axis::Scale::logarithmic : Axis::Scale::from_zero;
 }
 
+/// Both ends of a label that is too long, since settings of one method differ at the end; whole
+/// UTF-8 characters.
+std::string shortened(const std::string& label) {
+    std::vector<std::size_t> begins;  // of the characters
+    for (std::size_t i = 0; i < label.size(); ++i) {
+        if ((static_cast<unsigned char>(label[i]) & 0xC0) != 0x80) begins.push_back(i);
+    }
+    if (begins.size() <= kLabelLength) return label;
+    constexpr std::size_t kHead = kLabelLength / 2;
+    const std::size_t tail = begins[begins.size() + kHead + 1 - kLabelLength];
+    return label.substr(0, begins[kHead]) + "…" + label.substr(tail);
+}
+
+/// To the right above the point, or to the left where there is no room.
+std::string value_beside(double x, double y, const std::string& text) {
+    const bool room = x < kRight - 60;
+    return fmt::format("<text class=\"value{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
+                       room ? "" : " end", room ? x + kDot + 3 : x - kDot - 3, y - kDot - 2,
+                       escape(text));
+}
+
 std::string series_svg(const Series& series, const Axis& x, const Axis& y) {
     std::string line;
     std::string dots;
@@ -112,6 +133,7 @@ std::string series_svg(const Series& series, const Axis& x, const Axis& y) {
                     ? std::string()
                     : fmt::format("{}: {}, {}", mark.label, tick_text(mark.x), tick_text(mark.y));
             dots += dot(left, top, series.color / kColors, title);
+            if (!mark.value.empty()) dots += value_beside(left, top, shortened(mark.value));
         }
     }
     std::string svg = fmt::format("<g class=\"{} d{}\">", classes(series), series.variant % 4);
@@ -140,19 +162,6 @@ std::string curves_svg(const Plot& plot) {
                       y_axis(y, plot.y_title);
     for (const Series& series : plot.series) svg += series_svg(series, x, y);
     return svg + "</svg>\n";
-}
-
-/// Both ends of a label that is too long, since settings of one method differ at the end; whole
-/// UTF-8 characters.
-std::string shortened(const std::string& label) {
-    std::vector<std::size_t> begins;  // of the characters
-    for (std::size_t i = 0; i < label.size(); ++i) {
-        if ((static_cast<unsigned char>(label[i]) & 0xC0) != 0x80) begins.push_back(i);
-    }
-    if (begins.size() <= kLabelLength) return label;
-    constexpr std::size_t kHead = kLabelLength / 2;
-    const std::size_t tail = begins[begins.size() + kHead + 1 - kLabelLength];
-    return label.substr(0, begins[kHead]) + "…" + label.substr(tail);
 }
 
 std::string bar_svg(const Mark& mark, const Axis& axis, double top, double thickness, double zero) {

@@ -177,6 +177,7 @@ void add_cells(Page& page, const ReportData& data) {
                 params += fmt::format("{}{}={}", params.empty() ? "" : " ", param.name(),
                                       results::value_text(*param));
             }
+            table.settings.push_back(setting_of(cell));
             std::vector<Field>& row = table.rows.emplace_back();
             row = {text_field(cell["cell"].asString()), text_field(cell["scenario"].asString()),
                    text_field(params), number_field(cell["repetition"].asInt(), 0),

@@ -151,6 +151,7 @@ void add_compared_frames(Page& page, const ReportData& data, const ResultSet& se
         for (const auto& [frame, objects] : compared_frames(group)) {
             std::vector<Field>& row = table.rows.emplace_back();
             row.push_back(text_field(group.label));
+            table.settings.push_back(setting_of(*group.cells.front()));
             row.push_back(number_field(frame, 0));
             add_fields(row, kFrameFigures, objects);
         }

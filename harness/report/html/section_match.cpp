@@ -77,6 +77,7 @@ Table cost_table(const ResultSet& set, const results::MatchTarget& target) {
             if (const auto value = target.measured(*cell)) measured.push_back(*value);
         }
         std::vector<Field>& row = table.rows.emplace_back();
+        table.settings.push_back(setting_of(*group.cells.front()));
         row = {text_field(group.label), number_field(measure::median(measured), digits_of(target))};
         add_fields(row, kCosts, group.good);
     }

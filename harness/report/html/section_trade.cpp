@@ -48,14 +48,34 @@ bool spreads(const std::vector<TradePoint>& points) {
     return ratio >= 8;
 }
 
+constexpr std::size_t kMostValues = 40;  // written beside the points: more would hide each other
+
+/// "tau=2"; of a method with one setting the knob's value that `match` took, where it did.
+std::string setting_in_words(const ResultSet& set, const results::CellGroup& group) {
+    if (!group.setting.empty() || !set.folder->match) return group.setting;
+    for (const results::MatchRecord::Method& method : set.folder->match->methods) {
+        if (method.method != group.method || !method.knob || !method.knob_value) continue;
+        return fmt::format("{}={:.6g}", *method.knob, *method.knob_value);
+    }
+    return {};
+}
+
+/// Of one parameter its value alone.
+std::string value_of(const std::string& setting) {
+    const std::size_t equals = setting.find('=');
+    const bool one = equals != setting.npos && setting.find('=', equals + 1) == setting.npos;
+    return one ? setting.substr(equals + 1) : setting;
+}
+
 Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) {
     std::vector<TradePoint> points;
     std::size_t infinite = 0;
     for (const results::CellGroup& group : set.groups) {
-        const auto value = figure(group, cost.key, cost.inner);
+        std::vector<double> costs = results::numbers_of(group.good, cost.key, cost.inner);
+        for (double& value : costs) value /= cost.unit;
         const auto error = results::pixel_error(group, results::ErrorMetric::p999);
-        if (value && error && std::isinf(*error)) ++infinite;
-        points.push_back({value ? *value / cost.unit : kAbsent, error.value_or(kAbsent)});
+        points.push_back(trade_point(costs, error, set.seed));
+        if (std::isfinite(points.back().cost) && error && std::isinf(*error)) ++infinite;
     }
     const std::vector<std::size_t> front = pareto_front(points);
 
@@ -82,7 +102,9 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
         series.name = series.toggle = group.method;
         series.color = data.color_of(group);
         Mark mark{points[i].cost, points[i].error};
-        mark.label = group.label;
+        const std::string setting = setting_in_words(set, group);
+        mark.label = group.method + (setting.empty() ? "" : " " + setting);
+        if (set.groups.size() <= kMostValues) mark.value = value_of(setting);
         mark.ringed = std::ranges::find(front, i) != front.end();
         series.marks.push_back(std::move(mark));
     }
@@ -103,7 +125,7 @@ void add_hypervolume(Page& page, const ResultSet& set) {
     std::map<std::string, std::vector<TradePoint>> methods;
     std::vector<TradePoint> points;
     for (const results::CellGroup& group : set.groups) {
-        points.push_back(trade_point(group, results::ErrorMetric::p999));
+        points.push_back(trade_point(group, results::ErrorMetric::p999, set.seed));
         methods[group.method].push_back(points.back());
     }
     const auto reference = reference_point(points);
@@ -113,8 +135,8 @@ void add_hypervolume(Page& page, const ResultSet& set) {
     Table table = table_of(set, "hypervolume", "Hypervolume, " + set.title);
     table.columns.push_back({"settings", "settings"});
     table.columns.push_back({"on the front", "on_front", true,
-                             "settings than which none of any method is both faster (mean frame "
-                             "time) and nearer to the truth (P99.9)"});
+                             "settings that none of any method beats in mean frame time and P99.9 "
+                             "error by more than can be measured"});
     table.columns.push_back({"hypervolume", "hypervolume", true, "0 to 1; more is better"});
     table.columns.push_back({"up to, ms", "reference.frame_ms"});
     table.columns.push_back({"up to, px", "reference.pixel_error_px"});
@@ -146,8 +168,10 @@ void add_trade(Page& page, const ReportData& data, const ResultSet& set) {
     page.paragraph(
         fmt::format(
             "Down and left is better. The settings of a method are joined by a line; ringed "
-            "and joined by the dashed line is the Pareto front of all methods: nothing else "
-            "costs less and errs less.{}",
+            "and joined by the dashed line is the Pareto front of all methods: for every setting "
+            "that is not on it, one on it costs less and errs no more, or errs less and costs no "
+            "more. Errors that are the same rounded to 1/64 px, and costs "
+            "whose intervals over the repetitions overlap, count as equal.{}",
             realtime ? " The error of an asynchronous method is that of its real-time "
                        "replay, which its frame times showed."
                      : ""),

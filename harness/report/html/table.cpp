@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
+#include <utility>
 
 #include "report/html/text.h"
+#include "results/cell_groups.h"
 
 namespace lodbench::report::html {
 
@@ -31,6 +34,46 @@ std::string csv_field(std::string_view field) {
     return result + '"';
 }
 
+bool is_in_csv(const Table& table, const Column& column) {
+    if (column.place == Column::Place::page) return false;
+    return table.settings.empty() || (column.field != "method" && column.field != "scenario");
+}
+
+std::string header(const Table& table, const std::set<std::string>& params) {
+    std::string csv = "results,scenario";
+    if (!table.settings.empty()) {
+        csv += ",method";
+        for (const std::string& name : params) {
+            const bool taken =
+                name == "results" || name == "scenario" || name == "method" ||
+                std::ranges::find(table.columns, name, &Column::field) != table.columns.end();
+            csv += "," + csv_field(taken ? "params." + name : name);
+        }
+    }
+    for (const Column& column : table.columns) {
+        if (is_in_csv(table, column)) csv += "," + csv_field(column.field);
+    }
+    return csv + "\r\n";
+}
+
+std::string line(const Table& table, std::size_t row, const std::set<std::string>& params) {
+    std::string csv = csv_field(table.results) + ",";
+    if (table.settings.empty()) {
+        csv += csv_field(table.scenario);
+    } else {
+        const Setting& setting = table.settings[row];
+        csv += csv_field(setting.scenario) + "," + csv_field(setting.method);
+        for (const std::string& name : params) {
+            const auto value = setting.params.find(name);
+            csv += "," + (value == setting.params.end() ? "" : csv_field(value->second));
+        }
+    }
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (is_in_csv(table, table.columns[i])) csv += "," + csv_field(table.rows[row][i].value);
+    }
+    return csv + "\r\n";
+}
+
 }  // namespace
 
 Field text_field(std::string text) {
@@ -49,6 +92,7 @@ std::string to_html(const Table& table) {
         "<thead><tr>",
         escape(table.caption), escape(table.id), escape(table.results), escape(table.scenario));
     for (const Column& column : table.columns) {
+        if (column.place == Column::Place::csv) continue;
         html += fmt::format("<th scope=\"col\"{}{}>{}</th>", column.numeric ? " class=\"n\"" : "",
                             column.explanation.empty()
                                 ? ""
@@ -60,6 +104,7 @@ std::string to_html(const Table& table) {
         html += "<tr>";
         for (std::size_t i = 0; i < row.size(); ++i) {
             const Column& column = table.columns[i];
+            if (column.place == Column::Place::csv) continue;
             const std::string text = escape(row[i].text);
             if (i == 0) {
                 html += fmt::format("<th scope=\"row\" data-field=\"{}\">{}</th>",
@@ -76,18 +121,45 @@ std::string to_html(const Table& table) {
     return html + "</tbody></table></div>\n";
 }
 
-void CsvTables::add(const Table& table) {
-    std::string& csv = files_[table.id];
-    if (csv.empty()) {
-        csv = "results,scenario";
-        for (const Column& column : table.columns) csv += "," + csv_field(column.field);
-        csv += "\r\n";
+Setting setting_of(const Json::Value& cell) {
+    Setting setting{cell["scenario"].asString(), cell["method"].asString(), {}};
+    const Json::Value& params = cell["params"];
+    if (!params.isObject()) return setting;
+    for (auto param = params.begin(); param != params.end(); ++param) {
+        setting.params[param.name()] = results::value_text(*param);
     }
-    for (const auto& row : table.rows) {
-        csv += csv_field(table.results) + "," + csv_field(table.scenario);
-        for (const Field& field : row) csv += "," + csv_field(field.value);
-        csv += "\r\n";
+    return setting;
+}
+
+std::set<std::string> CsvTables::swept() const {
+    std::map<std::pair<std::string, std::string>, std::string> first;  // of method and parameter
+    std::set<std::string> names;
+    for (const auto& [id, tables] : tables_) {
+        for (const Table& table : tables) {
+            for (const Setting& setting : table.settings) {
+                for (const auto& [name, value] : setting.params) {
+                    const auto& known = first.try_emplace({setting.method, name}, value);
+                    if (known.first->second != value) names.insert(name);
+                }
+            }
+        }
     }
+    return names;
+}
+
+std::map<std::string, std::string> CsvTables::files() const {
+    const std::set<std::string> params = swept();
+    std::map<std::string, std::string> files;
+    for (const auto& [id, tables] : tables_) {
+        std::string& csv = files[id];
+        const auto filled =
+            std::ranges::find_if(tables, [](const Table& table) { return !table.rows.empty(); });
+        csv = header(filled == tables.end() ? tables.front() : *filled, params);
+        for (const Table& table : tables) {
+            for (std::size_t i = 0; i < table.rows.size(); ++i) csv += line(table, i, params);
+        }
+    }
+    return files;
 }
 
 }  // namespace lodbench::report::html
