@@ -30,6 +30,7 @@ struct ValidateOptions {
     std::optional<double> time_limit_s;
     bool json = false;
     bool list = false;
+    bool strict = false;
 };
 
 void list_checks() {
@@ -83,6 +84,7 @@ std::string repeat_command(const ValidateOptions& options, const std::string& me
                            const run::Settings& settings, const std::string& test) {
     std::string text = fmt::format("lodbench validate {} --method {} --test {} --seed {}",
                                    options.plugin, method, test, options.seed);
+    if (options.strict) text += " --strict";
     for (const auto& [name, value] : settings) text += fmt::format(" --set {}={}", name, value);
     return text;
 }
@@ -140,7 +142,7 @@ int run_validate(const ValidateOptions& options) {
                    report);
         return run::kPromiseBroken;
     }
-    int passed = 0, failed = 0, skipped = 0;
+    int passed = 0, warned = 0, failed = 0, skipped = 0;
     const std::vector<run::MethodInfo> methods = chosen_methods(options, listing);
     const std::vector<run::Setting> all_settings = parse_settings(options, methods);
     for (const run::MethodInfo& method : methods) {
@@ -152,12 +154,16 @@ int run_validate(const ValidateOptions& options) {
                                                .settings = settings,
                                                .device = options.device,
                                                .seed = options.seed};
-            const conformance::CheckReport report =
+            conformance::CheckReport report =
                 hung.empty() ? conformance::run_check(check, subject, limit_of(options, check))
                              : not_run(check, hung);
             if (!report.hung_in.empty()) {
                 hung = fmt::format("{} hung in {}", report.check, report.hung_in);
             }
+            if (options.strict && report.verdict == conformance::Verdict::warned) {
+                report.verdict = conformance::Verdict::failed;
+            }
+            warned += report.verdict == conformance::Verdict::warned;
             passed += report.verdict == conformance::Verdict::passed;
             failed += report.verdict == conformance::Verdict::failed;
             skipped += report.verdict == conformance::Verdict::skipped;
@@ -169,11 +175,11 @@ int run_validate(const ValidateOptions& options) {
         }
     }
     if (!options.json) {
-        base::print("{} passed, {} failed, {} skipped, seed {}\n", passed, failed, skipped,
-                    options.seed);
+        base::print("{} passed, {} failed, {} skipped, {} warned, seed {}\n", passed, failed,
+                    skipped, warned, options.seed);
     }
     if (failed > 0) return run::kPromiseBroken;
-    return passed > 0 ? run::kAllWell : run::kNothingMeasured;
+    return passed + warned > 0 ? run::kAllWell : run::kNothingMeasured;
 }
 
 }  // namespace
@@ -194,6 +200,8 @@ void add_validate(CLI::App& app, int& status) {
     command
         ->add_option("--time-factor", options->time_factor, "stretches each test's time limit; 1")
         ->check(finite);
+    command->add_flag("--strict", options->strict,
+                      "a warning (a claimed bound that does not hold) is a failure");
     command->add_flag("--json", options->json, "print one JSON object a line");
     command->add_flag("--list", options->list, "list the tests and what each promises");
     command->callback([options, &status] { status = run_validate(*options); });

@@ -31,6 +31,12 @@ struct PromiseBroken : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// What the method claims of itself does not hold: the figures. A warning, for a claim is its
+/// paper's, not the harness's.
+struct ClaimBroken : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 /// The check says nothing of this method: why.
 struct NotApplicable : std::runtime_error {
     using std::runtime_error::runtime_error;
@@ -40,8 +46,8 @@ struct Check {
     const char* name;     ///< [a-z0-9-]+
     const char* promise;  ///< one line: what holds when it passes
     double time_limit_s;
-    /// Returns when the promise is kept, throws PromiseBroken, run::MethodFailure or NotApplicable
-    /// otherwise.
+    /// Returns when the promise is kept, throws PromiseBroken, ClaimBroken, run::MethodFailure or
+    /// NotApplicable otherwise.
     void (*run)(const Subject&);
 };
 
@@ -68,5 +74,9 @@ void any_terrain_works(const Subject&);
 void origin_does_not_matter(const Subject&);
 void parameters_at_their_limits(const Subject&);
 void terrain_in_view_is_covered(const Subject&);
+// error_checks.cpp
+void finest_is_the_terrain(const Subject&);
+void claimed_bound_holds(const Subject&);
+void finer_is_no_worse(const Subject&);
 
 }  // namespace lodbench::conformance

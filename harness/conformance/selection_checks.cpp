@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "conformance/quality.h"
 #include "conformance/session.h"
 #include "conformance/surface_renderer.h"
 
 namespace lodbench::conformance {
 
 namespace {
-
-constexpr int kCameras = 4;
 
 /// A view that has nothing to do with the selected camera: from the side, turned about, another
 /// lens.
@@ -36,10 +35,6 @@ View overview(const Camera& selected, const TerrainInfo& terrain) {
     return picture_view(camera);
 }
 
-std::string name_of_camera(int i, const Subject& subject) {
-    return fmt::format("camera {} of seed {}", i, subject.seed);
-}
-
 /// Share of the pixels at which two depth images show another surface. Both draw the same vertices
 /// to the bit, but as strips and as single triangles, so that interpolated depth differs by
 /// rounding: a few steps of 2^-24 relative to the nearest vertex of the triangle, which reversed
@@ -57,82 +52,65 @@ double share_that_differs(const std::vector<float>& a, const std::vector<float>&
 }  // namespace
 
 void draw_is_idempotent(const Subject& subject) {
-    Session session(subject, ridged_terrain());
-    Random random(subject.seed);
-    for (int i = 0; i < kCameras; ++i) {
-        const Camera camera = random_camera(random, session.terrain());
-        session.select(camera, i);
-        const auto before = session.picture();
-        const auto captured = session.capture();
-        const auto after = session.picture();
-        require_same_depth(before, after, kViewport,
-                           name_of_camera(i, subject) + ", picture after a capture");
-        require_same_surface(captured, session.capture(),
-                             name_of_camera(i, subject) + ", second capture");
-    }
+    check_each_quality(subject, [](const Selected& at) {
+        const auto before = at.session.picture();
+        const auto captured = at.session.capture();
+        const auto after = at.session.picture();
+        require_same_depth(before, after, kViewport, at.where + ", picture after a capture");
+        require_same_surface(captured, at.session.capture(), at.where + ", second capture");
+    });
 }
 
 void select_is_repeatable(const Subject& subject) {
-    Session session(subject, ridged_terrain());
-    Random random(subject.seed);
-    for (int i = 0; i < kCameras; ++i) {
-        const Camera camera = random_camera(random, session.terrain());
-        session.select(camera, i);
-        const auto first = session.capture();
-        session.select(camera, i);
-        require_same_surface(first, session.capture(),
-                             name_of_camera(i, subject) + ", selected twice");
-    }
+    check_each_quality(subject, [](const Selected& at) {
+        const auto first = at.session.capture();
+        at.session.select(at.camera, at.frame);
+        require_same_surface(first, at.session.capture(), at.where + ", selected twice");
+    });
 }
 
 void selection_is_frozen(const Subject& subject) {
-    Session session(subject, ridged_terrain());
-    Random random(subject.seed);
-    for (int i = 0; i < kCameras; ++i) {
-        const Camera camera = random_camera(random, session.terrain());
-        session.select(camera, i);
-        const std::string where = name_of_camera(i, subject);
-        const auto picture = session.picture();
-        const auto captured = session.capture();
+    check_each_quality(subject, [](const Selected& at) {
+        const auto picture = at.session.picture();
+        const auto captured = at.session.capture();
         const auto expect = [&](std::uint64_t triangles, const char* view) {
             if (triangles == captured.triangle_count()) return;
-            throw PromiseBroken(fmt::format("{}: {} triangles in the capture, {} through {}", where,
-                                            captured.triangle_count(), triangles, view));
+            throw PromiseBroken(fmt::format("{}: {} triangles in the capture, {} through {}",
+                                            at.where, captured.triangle_count(), triangles, view));
         };
-        expect(session.triangles_through(picture_view(camera)), "the picture's view");
-        expect(session.triangles_through(other_view(camera, session.terrain())),
+        expect(at.session.triangles_through(picture_view(at.camera)), "the picture's view");
+        expect(at.session.triangles_through(other_view(at.camera, at.session.terrain())),
                "a view turned about");
-        expect(session.triangles_through(overview(camera, session.terrain())), "a view from above");
-        require_same_depth(picture, session.picture(), kViewport,
-                           where + ", picture after other views");
-        require_same_surface(captured, session.capture(), where + ", capture after other views");
-    }
+        expect(at.session.triangles_through(overview(at.camera, at.session.terrain())),
+               "a view from above");
+        require_same_depth(picture, at.session.picture(), kViewport,
+                           at.where + ", picture after other views");
+        require_same_surface(captured, at.session.capture(),
+                             at.where + ", capture after other views");
+    });
 }
 
 void picture_shows_the_capture(const Subject& subject) {
-    Session session(subject, ridged_terrain());
-    Random random(subject.seed);
-    for (int i = 0; i < kCameras; ++i) {
-        const Camera camera = random_camera(random, session.terrain());
-        session.select(camera, i);
-        SurfaceRenderer renderer(session.stage().device(), session.capture());
+    check_each_quality(subject, [](const Selected& at) {
+        SurfaceRenderer renderer(at.session.stage().device(), at.session.capture());
         const auto compare = [&](const View& view, const char* name) {
-            const auto drawn = session.depth_through(view);
-            renderer.draw(session.stage().device());
-            const double share = share_that_differs(drawn, session.stage().read_depth());
-            // One pixel in a thousand: triangles that clipping cuts get new corners, rounded each
-            // its own way.
+            const auto drawn = at.session.depth_through(view);
+            renderer.draw(at.session.stage().device());
+            const double share = share_that_differs(drawn, at.session.stage().read_depth());
+            // One pixel in a thousand: triangles that clipping cuts get new corners, rounded
+            // each its own way.
             if (share <= 1e-3) return;
             throw PromiseBroken(
-                fmt::format("{}: through {}, {:.2f} % of the pixels show another surface than the "
-                            "captured triangles "
-                            "(draw calls past gl::Device, or positions that depend on the view?)",
-                            name_of_camera(i, subject), name, 100 * share));
+                fmt::format("{}: through {}, {:.2f} % of the pixels show another surface than "
+                            "the captured triangles "
+                            "(draw calls past gl::Device, or positions that depend on the "
+                            "view?)",
+                            at.where, name, 100 * share));
         };
-        compare(picture_view(camera), "the picture's view");
-        compare(other_view(camera, session.terrain()), "a view turned about");
-        compare(overview(camera, session.terrain()), "a view from above");
-    }
+        compare(picture_view(at.camera), "the picture's view");
+        compare(other_view(at.camera, at.session.terrain()), "a view turned about");
+        compare(overview(at.camera, at.session.terrain()), "a view from above");
+    });
 }
 
 void timing_equals_lockstep(const Subject& subject) {

@@ -159,6 +159,12 @@ measure::CapturedSurface Session::capture() {
     return surface;
 }
 
+std::optional<double> Session::claimed_px() const {
+    const std::string& bound = stage_->method().claimed_bound;
+    if (bound.empty()) return std::nullopt;
+    return stage_->params().real(bound);
+}
+
 std::uint64_t Session::triangles_through(const View& view) {
     gl::Query query(stage_->device(), "conformance: primitives", GL_PRIMITIVES_GENERATED);
     query.begin();

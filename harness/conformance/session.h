@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -78,6 +79,8 @@ public:
     [[nodiscard]] std::vector<float> depth_through(const View& view);
     /// Background work paused, as everywhere in the harness.
     [[nodiscard]] measure::CapturedSurface capture();
+    /// The claimed bound in pixels; nothing where none is claimed.
+    [[nodiscard]] std::optional<double> claimed_px() const;
     /// GL_PRIMITIVES_GENERATED while the selection is drawn through `view`.
     [[nodiscard]] std::uint64_t triangles_through(const View& view);
 

@@ -53,10 +53,28 @@ constexpr std::array kChecks = {
     Check{"terrain-in-view-is-covered",
           "a method that claims a bound leaves no sample in view uncovered", kUsualLimit,
           terrain_in_view_is_covered},
+    Check{"finest-is-the-terrain",
+          "at the knob's fine end the surface is the terrain, to the bound or 1 px (RMS 2 px "
+          "without one)",
+          kUsualLimit, finest_is_the_terrain},
+    Check{"claimed-bound-holds",
+          "no sample's screen error exceeds the claimed bound; a warning, a failure with --strict",
+          kUsualLimit, claimed_bound_holds},
+    Check{"finer-is-no-worse", "the measured screen error does not rise as the knob gets finer",
+          kUsualLimit, finer_is_no_worse},
 };
 
 // The first letter of a child's answer.
-constexpr char kPassed = 'p', kFailed = 'f', kSkipped = 's';
+constexpr char kPassed = 'p', kWarned = 'w', kFailed = 'f', kSkipped = 's';
+
+Verdict verdict_of(char letter) {
+    switch (letter) {
+        case kPassed: return Verdict::passed;
+        case kWarned: return Verdict::warned;
+        case kSkipped: return Verdict::skipped;
+        default: return Verdict::failed;
+    }
+}
 
 std::string judge(const Check& check, const Subject& subject) {
     try {
@@ -66,6 +84,8 @@ std::string judge(const Check& check, const Subject& subject) {
         return kSkipped + std::string(reason.what());
     } catch (const run::MethodSkipped& reason) {
         return kSkipped + std::string(reason.what());
+    } catch (const ClaimBroken& broken) {
+        return kWarned + std::string(broken.what());
     } catch (const PromiseBroken& broken) {
         return kFailed + std::string(broken.what());
     } catch (const run::MethodFailure& failure) {
@@ -82,6 +102,7 @@ std::span<const Check> all_checks() {
 const char* name_of(Verdict verdict) {
     switch (verdict) {
         case Verdict::passed: return "passed";
+        case Verdict::warned: return "warned";
         case Verdict::failed: return "failed";
         case Verdict::skipped: return "skipped";
     }
@@ -119,9 +140,7 @@ CheckReport run_check(const Check& check, const Subject& subject, double time_li
     report.reason = answer.text;
     switch (answer.ending) {
         case base::Ending::answered:
-            report.verdict = answer.text.front() == kPassed    ? Verdict::passed
-                             : answer.text.front() == kSkipped ? Verdict::skipped
-                                                               : Verdict::failed;
+            report.verdict = verdict_of(answer.text.front());
             report.reason = answer.text.substr(1);
             break;
         case base::Ending::refused: throw InputError(answer.text);

@@ -8,7 +8,7 @@
 
 namespace lodbench::conformance {
 
-enum class Verdict { passed, failed, skipped };
+enum class Verdict { passed, warned, failed, skipped };
 [[nodiscard]] const char* name_of(Verdict verdict);
 
 struct CheckReport {

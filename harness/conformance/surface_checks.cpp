@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "conformance/quality.h"
 #include "conformance/session.h"
 
 namespace lodbench::conformance {
@@ -271,6 +272,8 @@ void terrain_in_view_is_covered(const Subject& subject) {
             require_covered(session, camera, fmt::format("camera {} of seed {}", i, subject.seed));
         }
     }
+    check_each_quality(
+        subject, [](const Selected& at) { require_covered(at.session, at.camera, at.where); });
 }
 
 }  // namespace lodbench::conformance

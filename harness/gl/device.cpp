@@ -42,6 +42,15 @@ void check_commands(const Buffer& commands, std::size_t offset, GLsizei draw_cou
     }
 }
 
+/// The driver would take `offset` for an address in the process's own memory, or draw nothing.
+void check_elements(const Program& program, const VertexArray& vertices) {
+    if (!vertices || vertices.has_elements()) return;  // an empty array is refused with the draw
+    throw ContractError(fmt::format(
+        "draw_elements with program '{}': vertex array '{}' has no element buffer; bind one with "
+        "VertexArray::elements",
+        program.label(), vertices.label()));
+}
+
 }  // namespace
 
 Device::Device() {
@@ -192,6 +201,7 @@ void Device::draw_arrays(const Program& program, const VertexArray& vertices, GL
 void Device::draw_elements(const Program& program, const VertexArray& vertices, GLenum mode,
                            GLsizei count, GLenum type, std::size_t offset, GLsizei instances,
                            GLint base_vertex, GLuint base_instance) {
+    check_elements(program, vertices);
     submit(program, vertices, mode, [&] {
         glDrawElementsInstancedBaseVertexBaseInstance(mode, count, type,
                                                       reinterpret_cast<const void*>(offset),
@@ -212,6 +222,7 @@ void Device::draw_arrays_indirect(const Program& program, const VertexArray& ver
 void Device::draw_elements_indirect(const Program& program, const VertexArray& vertices,
                                     GLenum mode, GLenum type, const Buffer& commands,
                                     std::size_t offset, GLsizei draw_count, GLsizei stride) {
+    check_elements(program, vertices);
     check_commands(commands, offset, draw_count, stride, 5 * sizeof(GLuint));
     submit(program, vertices, mode, [&] {
         glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.name());

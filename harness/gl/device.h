@@ -73,7 +73,8 @@ public:
     // tessellation stage that makes triangles); anything else is a ContractError.
     void draw_arrays(const Program& program, const VertexArray& vertices, GLenum mode, GLint first,
                      GLsizei count, GLsizei instances = 1, GLuint base_instance = 0);
-    /// `type` is GL_UNSIGNED_SHORT or GL_UNSIGNED_INT; `offset` in bytes into the element buffer.
+    /// `type` is GL_UNSIGNED_SHORT or GL_UNSIGNED_INT; `offset` in bytes into the element buffer; a
+    /// vertex array without one is a ContractError, here and where it is indirect.
     void draw_elements(const Program& program, const VertexArray& vertices, GLenum mode,
                        GLsizei count, GLenum type, std::size_t offset = 0, GLsizei instances = 1,
                        GLint base_vertex = 0, GLuint base_instance = 0);

@@ -122,11 +122,13 @@ VertexArray::VertexArray(Device& device, std::string_view label)
     ++device.object_counts().vertex_arrays;
 }
 
-VertexArray::VertexArray(VertexArray&& other) noexcept : Object(std::move(other)) {}
+VertexArray::VertexArray(VertexArray&& other) noexcept
+    : Object(std::move(other)), has_elements_(std::exchange(other.has_elements_, false)) {}
 
 VertexArray& VertexArray::operator=(VertexArray&& other) noexcept {
     VertexArray taken(std::move(other));
     swap(taken);
+    std::swap(has_elements_, taken.has_elements_);
     return *this;
 }
 
@@ -163,6 +165,7 @@ void VertexArray::integer_attribute(GLuint location, int components, GLenum type
 void VertexArray::elements(const Buffer& buffer) {
     const Device::Scope scope(*device_, this, &buffer);
     glVertexArrayElementBuffer(name_, buffer.name());
+    has_elements_ = bool(buffer);
 }
 
 Framebuffer::Framebuffer(Device& device, std::string_view label, const Texture* color,

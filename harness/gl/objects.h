@@ -118,6 +118,11 @@ public:
     void integer_attribute(GLuint location, int components, GLenum type, const Buffer& buffer,
                            std::size_t offset, GLsizei stride, GLuint divisor = 0);
     void elements(const Buffer& buffer);
+    /// Without an element buffer, draw_elements has no indices to read.
+    [[nodiscard]] bool has_elements() const { return has_elements_; }
+
+private:
+    bool has_elements_ = false;
 };
 
 /// Bytes of one texel of an internal format, as counted (padding of the driver is not known);

@@ -70,6 +70,14 @@ constexpr Fault kFaults[] = {
     {"float-world", "origin-does-not-matter", "rounding allows"},
     {"refuses-its-maximum", "parameters-at-their-limits", "tau = 100: "},
     {"leaves-a-hole", "terrain-in-view-is-covered", "are covered by no triangle"},
+    {"unbound-texture", "finest-is-the-terrain",
+     "tau = 0.1 (finest): the surface is not the terrain: greatest screen error "},
+    {"morphs-by-view", "picture-shows-the-capture",
+     "tau = 2 (coarse), camera 0 of seed 7: through "},
+    {"claims-too-much", "claimed-bound-holds --strict",
+     "the claimed bound does not hold: tau = 2 (coarse): 2 px are claimed, "},
+    {"worse-when-finer", "finer-is-no-worse",
+     "tau = 0.1 (finest) is finer than tau = 1, but its P99.9 of the screen error is "},
     {"aborts", "draw-is-idempotent", "signal 6"},
     {"rounds-upwards", "pipeline-state-is-restored",
      "left the floating-point rounding mode changed in select"},
@@ -94,6 +102,32 @@ TEST(Conformance, passes_a_method_that_keeps_every_promise) {
     EXPECT_EQ(outcome.output.find("skipped "), std::string::npos) << outcome.output;
 }
 
+TEST(Conformance, warns_of_a_claim_that_does_not_hold_and_fails_only_with_strict) {
+    const std::string test = "--method claims-too-much --seed 7 --test claimed-bound-holds";
+    const Outcome warned = validate(test);
+    EXPECT_EQ(warned.status, 0) << warned.output;
+    EXPECT_NE(warned.output.find("warned   claims-too-much claimed-bound-holds"), std::string::npos)
+        << warned.output;
+    EXPECT_NE(warned.output.find("tau = 1: 1 px are claimed, "), std::string::npos)
+        << warned.output;
+    EXPECT_NE(warned.output.find("0 passed, 0 failed, 0 skipped, 1 warned"), std::string::npos)
+        << warned.output;
+    const Outcome strict = validate(test + " --strict");
+    EXPECT_EQ(strict.status, 1) << strict.output;
+    EXPECT_NE(strict.output.find("0 passed, 1 failed, 0 skipped, 0 warned"), std::string::npos)
+        << strict.output;
+    EXPECT_NE(strict.output.find("--seed 7 --strict"), std::string::npos) << strict.output;
+}
+
+TEST(Conformance, finds_level_of_detail_at_fault_where_the_default_shows_none) {
+    // In order at the default: only the coarse end tells.
+    const Outcome outcome =
+        validate("--method morphs-by-view --seed 7 --test picture-shows-the-capture --set tau=0.1");
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find("tau = 3.2 (coarse)"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("show another surface"), std::string::npos) << outcome.output;
+}
+
 TEST(Conformance, a_hang_costs_one_limit_and_not_one_a_test) {
     const Outcome outcome = validate("--method loops --time-limit 4");
     EXPECT_EQ(outcome.status, 1) << outcome.output;
@@ -105,8 +139,8 @@ TEST(Conformance, a_hang_costs_one_limit_and_not_one_a_test) {
         return count;
     };
     EXPECT_EQ(said("hung in draw: it did not come back within 2 s"), 1U) << outcome.output;
-    EXPECT_EQ(said("not run: draw-is-idempotent hung in draw"), 15U) << outcome.output;
-    EXPECT_NE(outcome.output.find("1 passed, 1 failed, 15 skipped"), std::string::npos)
+    EXPECT_EQ(said("not run: draw-is-idempotent hung in draw"), 18U) << outcome.output;
+    EXPECT_NE(outcome.output.find("1 passed, 1 failed, 18 skipped"), std::string::npos)
         << outcome.output;
 }
 

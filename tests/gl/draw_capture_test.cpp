@@ -302,6 +302,45 @@ TEST(Device, refuses_modes_that_are_not_triangles) {
     EXPECT_EQ(gl.device.draw_calls(), 0U);
 }
 
+TEST(Device, refuses_to_draw_elements_without_an_element_buffer) {
+    GlTest gl;
+    const Mesh mesh(gl.device);
+    const Program program = plain(gl.device);
+    VertexArray bare(gl.device, "bare");
+    bare.attribute(0, 4, mesh.corners, 0, sizeof(glm::vec4));
+    const Buffer commands(gl.device, "commands", 5 * sizeof(GLuint));
+    const auto words = [](const auto& draw) -> std::string {
+        try {
+            draw();
+        } catch (const ContractError& error) {
+            return error.what();
+        }
+        return "drawn";
+    };
+    const std::string expected =
+        "draw_elements with program 'plain': vertex array 'bare' has no element buffer; bind one "
+        "with VertexArray::elements";
+    const auto direct = [&] {
+        gl.device.draw_elements(program, bare, GL_TRIANGLES, 3, GL_UNSIGNED_INT);
+    };
+    const auto indirect = [&] {
+        gl.device.draw_elements_indirect(program, bare, GL_TRIANGLES, GL_UNSIGNED_INT, commands, 0,
+                                         1);
+    };
+    EXPECT_EQ(words(direct), expected);
+    EXPECT_EQ(words(indirect), expected);
+    EXPECT_EQ(gl.device.draw_calls(), 0U);
+
+    bare.elements(mesh.elements);
+    VertexArray moved = std::move(bare);
+    gl.device.draw_elements(program, moved, GL_TRIANGLES, 3, GL_UNSIGNED_INT);
+    EXPECT_EQ(gl.device.draw_calls(), 1U);
+    moved.elements(Buffer());
+    EXPECT_EQ(
+        words([&] { gl.device.draw_elements(program, moved, GL_TRIANGLES, 3, GL_UNSIGNED_INT); }),
+        expected);
+}
+
 TEST(Device, names_program_and_vertex_array_in_errors_of_the_driver) {
     GlTest gl;
     const Texture color(gl.device, "color", GL_TEXTURE_2D, GL_RGBA8, 16, 16);

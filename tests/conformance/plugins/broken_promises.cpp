@@ -181,6 +181,45 @@ public:
     void draw(const View&) override { draw_grid({}, index_count_ / 3 / 2); }
 };
 
+class UnboundTexture : public GridMethod {
+public:
+    explicit UnboundTexture(const Params& params) : GridMethod(params) {
+        vertex_shader_ = "unbound.vert";
+    }
+};
+
+/// Level of detail from 2 px up: in order at the default and at the knob's fine end.
+class MorphsByView : public GridMethod {
+public:
+    explicit MorphsByView(const Params& params) : GridMethod(params) {
+        if (params.real("tau") >= 2) step_ = 4;
+    }
+    void draw(const View& view) override {
+        const double moved = glm::length(view.origin - camera_.position);
+        draw_grid({0, 0, step_ > 1 ? float(0.05 * moved) : 0.0F});
+    }
+};
+
+/// Every second sample at 1 px, every fourth at 2 px: about ten times what is claimed.
+class ClaimsTooMuch : public GridMethod {
+public:
+    explicit ClaimsTooMuch(const Params& params) : GridMethod(params) {
+        while (step_ <= params.real("tau")) step_ *= 2;
+    }
+};
+
+class WorseWhenFiner : public GridMethod {
+public:
+    explicit WorseWhenFiner(const Params& params) : GridMethod(params) {
+        if (params.real("tau") >= 2) step_ = 2;
+        if (params.real("tau") < 1) lift_ = 100;
+    }
+    void draw(const View&) override { draw_grid({0, 0, lift_}); }
+
+private:
+    float lift_ = 0;
+};
+
 class Aborts : public GridMethod {
 public:
     using GridMethod::GridMethod;
@@ -240,6 +279,10 @@ constexpr MethodDescriptor kMethods[] = {
     method<FloatWorld>("float-world"),
     method<RefusesItsMaximum>("refuses-its-maximum"),
     method<LeavesAHole>("leaves-a-hole"),
+    method<UnboundTexture>("unbound-texture"),
+    method<MorphsByView>("morphs-by-view"),
+    method<ClaimsTooMuch>("claims-too-much"),
+    method<WorseWhenFiner>("worse-when-finer"),
     method<Aborts>("aborts"),
     method<Loops>("loops"),
 };

@@ -7,6 +7,18 @@
 
 namespace lodbench::broken {
 
+namespace {
+
+/// 0, step, 2 step, ... and the last of `count`.
+std::vector<int> every(int step, int count) {
+    std::vector<int> places;
+    for (int place = 0; place < count - 1; place += step) places.push_back(place);
+    places.push_back(count - 1);
+    return places;
+}
+
+}  // namespace
+
 void GridMethod::prepare(const Terrain& terrain, gl::Device&) {
     terrain_ = &terrain;
 }
@@ -17,23 +29,26 @@ void GridMethod::upload(gl::Device& device) {
     const int columns = terrain_->info().columns;
     std::vector<float> heights(std::size_t(rows) * std::size_t(columns));
     terrain_->read({0, 0, rows, columns}, heights);
+    const std::vector<int> drawn_rows = every(step_, rows), drawn_columns = every(step_, columns);
     std::vector<glm::vec3> vertices;
     std::vector<std::uint32_t> indices;
-    for (int row = 0; row < rows; ++row) {
-        for (int column = 0; column < columns; ++column) {
+    for (const int row : drawn_rows) {
+        for (const int column : drawn_columns) {
             const auto here = std::uint32_t(vertices.size());
-            vertices.emplace_back(column, row, heights[here]);
+            vertices.emplace_back(
+                column, row,
+                heights[std::size_t(row) * std::size_t(columns) + std::size_t(column)]);
             if (row == 0 || column == 0) continue;
-            const auto above = here - std::uint32_t(columns);
+            const auto above = here - std::uint32_t(drawn_columns.size());
             for (const std::uint32_t index : {above - 1, here - 1, here, above - 1, here, above}) {
                 indices.push_back(index);
             }
         }
     }
     index_count_ = int(indices.size());
-    program_ =
-        gl::Program(device, "grid", embedded_shaders(),
-                    {{GL_VERTEX_SHADER, "grid.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
+    program_ = gl::Program(
+        device, "grid", embedded_shaders(),
+        {{GL_VERTEX_SHADER, vertex_shader_}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
     vertices_ = gl::Buffer(device, "grid: vertices", std::span<const glm::vec3>(vertices));
     indices_ = gl::Buffer(device, "grid: indices", std::span<const std::uint32_t>(indices));
     array_ = gl::VertexArray(device, "grid");

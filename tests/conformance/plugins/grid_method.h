@@ -24,6 +24,8 @@ protected:
     /// Draws all triangles but the first `left_out`, moved by `shift` metres.
     void draw_grid(const glm::vec3& shift = glm::vec3(0), int left_out = 0);
 
+    int step_ = 1;  ///< samples between two vertices
+    const char* vertex_shader_ = "grid.vert";
     const Terrain* terrain_ = nullptr;
     gl::Device* device_ = nullptr;
     Camera camera_;

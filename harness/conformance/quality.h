@@ -1,0 +1,55 @@
+#pragma once
+// Where the quality knob stands while a promise is put to the test: level of detail must be at
+// work, or a mistake in it cannot show.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/session.h"
+
+namespace lodbench::conformance {
+
+/// One value of the quality knob.
+struct Quality {
+    std::string name;                  ///< for messages: "tau = 0.01 (finest)"
+    Session::Settings settings;        ///< for a Session; empty for a method without a knob
+    std::uint64_t triangles = 0;       ///< of a view over the whole terrain
+    std::optional<double> claimed_px;  ///< the claimed bound there; nothing where none is claimed
+};
+
+/// The subject's own setting, and the two ends between which its level of detail is at work.
+struct Qualities {
+    TerrainPointer terrain;  ///< on which level of detail is at work
+    Quality given;
+    /// Both empty for a method without a quality knob: `given` is all that there is.
+    std::optional<Quality> finest, coarse;
+    /// From the coarsest to the finest.
+    [[nodiscard]] std::vector<Quality> all() const;
+};
+
+/// Finds both ends by the triangles that are drawn, over a ridged terrain of 257 x 257 samples,
+/// more than kViewport has pixels for; of 513 x 513 where the method leaves nothing out of that.
+/// - finest: the end of the knob's range; where that draws more than kMostTriangles times those of
+///   the full grid, the last step towards it that does not.
+/// - coarse: the first step of a factor 2 (of a tenth of the range, for a range that does not call
+///   for factors) from the given value at which at most a quarter of the finest's triangles are
+///   drawn, or the end of the range.
+[[nodiscard]] Qualities find_qualities(const Subject& subject);
+inline constexpr std::uint64_t kMostTriangles = 8;
+
+/// A camera that was selected.
+struct Selected {
+    Session& session;
+    Camera camera;
+    int frame = 0;
+    std::string where;  ///< for messages: "tau = 1, camera 0 of seed 7"
+};
+
+/// Selects a few random cameras at each quality, the same ones at each, and
+/// calls `check` after each.
+void check_each_quality(const Subject& subject, const std::function<void(const Selected&)>& check);
+
+}  // namespace lodbench::conformance
