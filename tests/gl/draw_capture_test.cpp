@@ -304,6 +304,9 @@ TEST(Device, refuses_modes_that_are_not_triangles) {
 
 TEST(Device, refuses_to_draw_elements_without_an_element_buffer) {
     GlTest gl;
+    const Texture color(gl.device, "color", GL_TEXTURE_2D, GL_RGBA8, 16, 16);
+    const Framebuffer framebuffer(gl.device, "target", &color, nullptr);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     const Mesh mesh(gl.device);
     const Program program = plain(gl.device);
     VertexArray bare(gl.device, "bare");
@@ -339,6 +342,7 @@ TEST(Device, refuses_to_draw_elements_without_an_element_buffer) {
     EXPECT_EQ(
         words([&] { gl.device.draw_elements(program, moved, GL_TRIANGLES, 3, GL_UNSIGNED_INT); }),
         expected);
+    EXPECT_TRUE(gl.device.take_errors().empty());
 }
 
 TEST(Device, names_program_and_vertex_array_in_errors_of_the_driver) {
