@@ -45,6 +45,11 @@ Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
     return json;
 }
 
+/// Of a recorded flight's file.
+std::string flight_checksum(const scenario::Scenario& scenario) {
+    return results::checksum_of(base::read_text(scenario.path.recorded));
+}
+
 Json::Value run_context(const RunRequest& request, const Plan& plan,
                         const std::vector<PluginListing>& plugins) {
     Json::Value run = machine_context();
@@ -66,6 +71,9 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
         json["height"] = scenario.viewport.height;
         json["rate_hz"] = scenario.rate_hz;
         json["repetitions"] = scenario.repetitions;
+        if (!scenario.path.recorded.empty()) {
+            json["flight_checksum"] = flight_checksum(scenario);
+        }
         run["scenarios"].append(json);
     }
     run["plugins"] = listings_to_json(plugins);
@@ -232,6 +240,7 @@ private:
             const std::vector<PluginListing> plugins =
                 list_plugins(plugin_folders(request_.plugin_dirs));
             plan_ = plan_from_json(run_, folder_.path(), plugins);
+            refuse_other_flights();
             refuse_other_request(file, plugins);
         } catch (const Json::Exception& error) {
             throw InputError(
@@ -259,6 +268,21 @@ private:
                             "lodbench that began it, or begin anew with another --out",
                             file.string(), field, results::to_text(run_[field]),
                             results::to_text(here[field])));
+        }
+    }
+
+    /// And on one flight: that of a file is not in the scenario's text.
+    void refuse_other_flights() const {
+        for (Json::ArrayIndex i = 0; i < plan_.scenarios.size(); ++i) {
+            const scenario::Scenario& scenario = plan_.scenarios[i];
+            const Json::Value& began = run_["scenarios"][i]["flight_checksum"];
+            if (scenario.path.recorded.empty() || began.isNull()) continue;  // an older version's
+            const std::string here = flight_checksum(scenario);
+            if (began == here) continue;
+            throw InputError(fmt::format(
+                "{}: the flight has changed since the run began: its checksum was {} and is {}; "
+                "restore the file or begin anew with another --out",
+                scenario.path.recorded.string(), results::to_text(began), here));
         }
     }
 

@@ -112,5 +112,35 @@ TEST_F(ResumeTrust, run_json_says_when_the_run_was) {
     EXPECT_TRUE(run_.isMember("cpu_quota_cores"));
 }
 
+TEST(ResumeFlight, a_recorded_flight_that_changed_is_refused_with_both_checksums) {
+    const ScratchFolder scratch;
+    const fs::path flight = scratch.path() / "flight.csv";
+    const std::string rows = "frame,x,y,z,heading,pitch,roll\n0,20,20,300,0,-40,0\n";
+    std::ofstream(flight) << rows << "1,30,20,300,0,-40,0\n";
+    const fs::path file = scratch.path() / "recorded.toml";
+    std::ofstream(file) << "[terrain]\nsynthetic = \"plane\"\nrows = 17\ncolumns = 17\n"
+                           "spacing = 10\n[viewport]\nwidth = 64\nheight = 48\n[flight]\n"
+                           "kind = \"recorded\"\nfile = \"flight.csv\"\nwarmup_frames = 0\n"
+                           "[run]\nrepetitions = 2\n";
+    const fs::path out = scratch.path() / "out";
+    const std::vector<std::string> resume = {"run", "--resume", "--out", out.string()};
+    ASSERT_EQ(run_lodbench({"run", file.string(), "--out", out.string(), "--method", "template"},
+                           scratch.path())
+                  .status,
+              0);
+    const std::string lines = text_of(out / "cells.jsonl");
+    fs::resize_file(out / "cells.jsonl", lines.find('\n') + 1);  // as if killed
+    std::ofstream(flight) << rows << "1,40,20,300,0,-40,0\n";
+    const Finished refused = run_lodbench(resume, scratch.path());
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_THAT(refused.output,
+                HasSubstr("flight.csv: the flight has changed since the run began"));
+    EXPECT_EQ(cells_of(out).size(), 1U);
+    std::ofstream(flight) << rows << "1,30,20,300,0,-40,0\n";
+    const Finished resumed = run_lodbench(resume, scratch.path());
+    EXPECT_EQ(resumed.status, 0) << resumed.output;
+    EXPECT_EQ(cells_of(out).size(), 2U);
+}
+
 }  // namespace
 }  // namespace lodbench::test
