@@ -47,8 +47,8 @@ FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
     return *this;
 }
 
-void FileDescriptor::close() {
-    if (number_ >= 0) ::close(std::exchange(number_, -1));
+bool FileDescriptor::close() {
+    return number_ < 0 || ::close(std::exchange(number_, -1)) == 0;
 }
 
 FileDescriptor memory_file(const char* label) {
@@ -91,6 +91,10 @@ bool write_all(int descriptor, std::string_view text) {
         const ssize_t count = ::write(descriptor, text.data(), text.size());
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) return false;
+        if (count == 0) {
+            errno = ENOSPC;
+            return false;
+        }
         text.remove_prefix(std::size_t(count));
     }
     return true;

@@ -20,7 +20,8 @@ public:
     FileDescriptor& operator=(FileDescriptor&& other) noexcept;
     [[nodiscard]] int number() const { return number_; }
     [[nodiscard]] explicit operator bool() const { return number_ >= 0; }
-    void close();
+    /// False where the system refuses, as some do that have not written everything.
+    bool close();
 
 private:
     int number_ = -1;
@@ -33,7 +34,7 @@ private:
 /// Reads so many bytes from `offset` on. Throws EnvironmentError where the system refuses or the
 /// file ends before.
 void read_exactly(const FileDescriptor& file, off_t offset, void* bytes, std::size_t size);
-/// Writes all of `text`; false when the system refuses.
+/// Writes all of `text`; false when the system refuses, with errno.
 bool write_all(int descriptor, std::string_view text);
 
 /// How a child ended.

@@ -9,9 +9,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <utility>
 
 #include "api/error.h"
+#include "base/child_process.h"
 
 namespace lodbench::base {
 
@@ -30,33 +30,13 @@ namespace {
     throw EnvironmentError(words);
 }
 
-/// An open file that is closed on the way out.
-class File {
-public:
-    File(const fs::path& path, int flags) : number_(open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
-    ~File() {
-        if (number_ >= 0) ::close(number_);
-    }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    [[nodiscard]] int number() const { return number_; }
-    [[nodiscard]] bool good() const { return number_ >= 0; }
-    /// Some file systems refuse only here.
-    [[nodiscard]] bool close() { return ::close(std::exchange(number_, -1)) == 0; }
-
-private:
-    int number_;
-};
+FileDescriptor open_file(const fs::path& path, int flags) {
+    return FileDescriptor(open(path.c_str(), flags | O_CLOEXEC, 0644));
+}
 
 /// 0, or the error number.
 int write_and_sync(int number, std::string_view text) {
-    while (!text.empty()) {
-        const ssize_t count = ::write(number, text.data(), text.size());
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return errno;
-        if (count == 0) return ENOSPC;
-        text.remove_prefix(std::size_t(count));
-    }
+    if (!write_all(number, text)) return errno;
     // EINVAL: what is no regular file (a pipe, /dev/full) cannot be synced.
     return fsync(number) == 0 || errno == EINVAL ? 0 : errno;
 }
@@ -80,10 +60,10 @@ void write_whole(const fs::path& path, std::string_view text) {
         fmt::format(".{}.{}-{}.tmp", path.filename().string(), getpid(), count++);
     int error = 0;
     {
-        File file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
-        if (!file.good()) fail("write", path, errno);
+        FileDescriptor file = open_file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
+        if (!file) fail("write", path, errno);
         error = write_and_sync(file.number(), text);
-        if (!file.close() && error == 0) error = errno;
+        if (!file.close() && error == 0) error = errno;  // some file systems refuse only here
     }
     if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
     if (error != 0) {
@@ -96,8 +76,8 @@ void append_line(const fs::path& path, std::string_view line) {
     if (line.find('\n') != line.npos) {
         throw ContractError("append_line: expected one line, found a newline in it");
     }
-    const File file(path, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
-    if (!file.good()) fail("write", path, errno);
+    const FileDescriptor file = open_file(path, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
+    if (!file) fail("write", path, errno);
     struct stat before {};
     if (fstat(file.number(), &before) != 0) fail("read the size of", path, errno);
     std::string text(line);
@@ -109,8 +89,8 @@ void append_line(const fs::path& path, std::string_view line) {
 }
 
 std::string read_text(const fs::path& path) {
-    const File file(path, O_RDONLY);
-    if (!file.good()) fail("read", path, errno);
+    const FileDescriptor file = open_file(path, O_RDONLY);
+    if (!file) fail("read", path, errno);
     std::string text;
     char block[65536];
     for (;;) {

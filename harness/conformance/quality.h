@@ -16,7 +16,6 @@ namespace lodbench::conformance {
 struct Quality {
     std::string name;                  ///< for messages: "tau = 0.01 (finest)"
     Session::Settings settings;        ///< for a Session; empty for a method without a knob
-    std::uint64_t triangles = 0;       ///< of a view over the whole terrain
     std::optional<double> claimed_px;  ///< the claimed bound there; nothing where none is claimed
 };
 

@@ -123,11 +123,10 @@ std::vector<std::string> FlightCheck::warnings(const std::string& name) const {
     const TerrainInfo& info = terrain_.info();
     if (blind_.count > 0) {
         warn(fmt::format(
-            "no terrain is in view in {}, whatever a method draws: its {} x {} m lie "
+            "no terrain is in view in {}, whatever a method draws: its {:g} x {:g} m lie "
             "{:g} to {:g} m high; move the cameras or turn them to it",
-            blind_.words(frames_), fmt::format("{:g}", info.spacing.x * (info.columns - 1)),
-            fmt::format("{:g}", info.spacing.y * (info.rows - 1)), double(info.min_height),
-            double(info.max_height)));
+            blind_.words(frames_), info.spacing.x * (info.columns - 1),
+            info.spacing.y * (info.rows - 1), double(info.min_height), double(info.max_height)));
     }
     if (below_.count > 0) {
         warn(

@@ -35,11 +35,12 @@ private:
         void add(int frame) {
             if (count++ == 0) first = frame;
         }
-        /// "5 of 120 frames, from frame 7 on": of all frames "every frame".
+        /// "5 of 120 frames, the first of them frame 7", "all 120 frames", "its one frame".
         [[nodiscard]] std::string words(int frames) const;
     };
 
-    /// Metres by which a position over the terrain is below the ground; 0 or less where it is not.
+    /// Metres by which a position is below the ground; 0 or less where it is not, or not over the
+    /// terrain.
     [[nodiscard]] double depth_below_ground(const glm::dvec3& position) const;
     /// Whether the box of some cell of the grid reaches into the view. True, too, where more tiles
     /// reach into it than are looked at.

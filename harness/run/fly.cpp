@@ -124,7 +124,7 @@ private:
         return scenario_.measure.truth && spec_.repetition == 0;
     }
     void measure_frame(int frame);
-    void shoot(int frame);
+    void shoot(int frame);  ///< the picture that is drawn, and its wireframe
     [[nodiscard]] std::filesystem::path shot_path(const std::string& which) const {
         return spec_.out / "shots" / fmt::format("{}__{}.png", spec_.id, which);
     }
@@ -433,7 +433,6 @@ void Flight::shoot(int frame) {
         return shot_path(fmt::format("f{:05}{}", frame, suffix));
     };
     const Viewport& size = scenario_.viewport;
-    stage_->draw_picture();
     picture::write_png(path(""), size.width, size.height, stage_->read_color());
     stage_->draw_picture(true);
     picture::write_png(path("__wireframe"), size.width, size.height, stage_->read_color());

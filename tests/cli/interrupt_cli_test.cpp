@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <map>
 #include <random>
 
 #include "base/process_tree.h"
+#include "cli/kills.h"
 #include "cli/run_lodbench.h"
 
 namespace lodbench::test {
@@ -68,20 +68,6 @@ protected:
         const int status = std::system(
             fmt::format("cd '{}' && {} >log 2>&1", scratch_.path().string(), line).c_str());
         return WEXITSTATUS(status);
-    }
-
-    /// Of each cell what does not depend on the time that it took.
-    static std::map<std::string, std::string> lockstep_of(const fs::path& folder) {
-        std::map<std::string, std::string> cells;
-        for (const Json::Value& cell : cells_of(folder)) {
-            std::string text;
-            for (const char* field : {"status", "triangles", "draw_calls", "uploaded_bytes",
-                                      "samples_served", "screen_error_px", "pixel_error_px"}) {
-                text += results::to_text(cell[field]) + "\n";
-            }
-            EXPECT_TRUE(cells.emplace(cell["cell"].asString(), text).second);
-        }
-        return cells;
     }
 
     const ScratchFolder scratch_;

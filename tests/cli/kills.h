@@ -1,8 +1,9 @@
 #pragma once
-// Commands that are killed at random moments.
+// Commands that are ended at random moments, and what must come of them.
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 #include "cli/run_lodbench.h"
@@ -28,6 +29,20 @@ inline std::string after_kills(const std::vector<std::string>& arguments, const 
     const Finished finished = run_lodbench(arguments, scratch);
     EXPECT_EQ(finished.status, 0) << finished.output;
     return text_of(document);
+}
+
+/// Of each cell what does not depend on the time that it took.
+inline std::map<std::string, std::string> lockstep_of(const fs::path& folder) {
+    std::map<std::string, std::string> cells;
+    for (const Json::Value& cell : cells_of(folder)) {
+        std::string text;
+        for (const char* field : {"status", "triangles", "draw_calls", "uploaded_bytes",
+                                  "samples_served", "screen_error_px", "pixel_error_px"}) {
+            text += results::to_text(cell[field]) + "\n";
+        }
+        EXPECT_TRUE(cells.emplace(cell["cell"].asString(), text).second);
+    }
+    return cells;
 }
 
 }  // namespace lodbench::test

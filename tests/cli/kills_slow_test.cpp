@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "cli/kills.h"
 
 namespace lodbench::test {
@@ -24,19 +22,6 @@ protected:
             out(folder).string()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
-    }
-    /// Of each cell what does not depend on the time that it took.
-    static std::map<std::string, std::string> lockstep_of(const fs::path& folder) {
-        std::map<std::string, std::string> cells;
-        for (const Json::Value& cell : cells_of(folder)) {
-            std::string text;
-            for (const char* field : {"status", "triangles", "draw_calls", "uploaded_bytes",
-                                      "samples_served", "screen_error_px", "pixel_error_px"}) {
-                text += results::to_text(cell[field]) + "\n";
-            }
-            EXPECT_TRUE(cells.emplace(cell["cell"].asString(), text).second);
-        }
-        return cells;
     }
     /// The command, flown undisturbed and killed, gives the same cells and leaves no temporary
     /// file.

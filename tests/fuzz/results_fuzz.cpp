@@ -150,12 +150,4 @@ std::vector<std::string> seeds() {
 }  // namespace
 }  // namespace lodbench::test
 
-extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-    lodbench::test::write_seeds_if_asked(*argc, *argv, lodbench::test::seeds);
-    return 0;
-}
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    lodbench::test::use_as_results({reinterpret_cast<const char*>(data), size});
-    return 0;
-}
+LODBENCH_FUZZ_TARGET(lodbench::test::use_as_results, lodbench::test::seeds)

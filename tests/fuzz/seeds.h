@@ -2,6 +2,7 @@
 // What every libFuzzer target of this folder has in common: NAME [--seeds FOLDER | libFuzzer's own
 // arguments].
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -27,3 +28,14 @@ void write_seeds_if_asked(int argc, char** argv, const MakeSeeds& make_seeds) {
 }
 
 }  // namespace lodbench::test
+
+/// What libFuzzer calls: `use_` takes the bytes as text, `seeds_` gives what to begin from.
+#define LODBENCH_FUZZ_TARGET(use_, seeds_)                                              \
+    extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {                      \
+        lodbench::test::write_seeds_if_asked(*argc, *argv, seeds_);                     \
+        return 0;                                                                       \
+    }                                                                                   \
+    extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) { \
+        use_({reinterpret_cast<const char*>(data), size});                              \
+        return 0;                                                                       \
+    }

@@ -8,7 +8,7 @@
 #include "api/error.h"
 #include "terrain/height_field.h"
 #include "terrain/raster_reader.h"
-#include "unit/raster_files.h"
+#include "unit/raster_input.h"
 
 namespace lodbench::terrain {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using test::packed16;
 using test::Tiff;
 
-class Elevation : public testing::Test {
+class Elevation : public RasterInput {
 protected:
     void SetUp() override {
         // Loads the module: what follows is read in this process.
@@ -32,32 +32,12 @@ protected:
             EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "GDAL spoke for itself";
         }
     }
-    TerrainSource source(const std::string& name, std::string_view bytes) {
-        TerrainSource made;
-        made.file = folder_.write(name, bytes);
-        return made;
-    }
     std::unique_ptr<HeightField> load(const std::string& name, std::string_view bytes) {
         return load_terrain(source(name, bytes));
-    }
-    std::string refusal(const TerrainSource& given) {
-        try {
-            (void)load_terrain(given);
-        } catch (const InputError& error) {
-            const std::string text = error.what();
-            EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-            EXPECT_EQ(text.find(folder_.path().string() + "/"), 0U) << text;
-            return text.substr(std::min(text.size(), folder_.path().string().size() + 1));
-        }
-        return "accepted";
-    }
-    std::string refusal(const std::string& name, std::string_view bytes) {
-        return refusal(source(name, bytes));
     }
     static std::vector<float> heights(const HeightField& field) {
         return {field.samples().begin(), field.samples().end()};
     }
-    test::TemporaryFolder folder_;
     bool capturing_ = false;
 };
 

@@ -13,7 +13,7 @@
 #include "terrain/raster_reader.h"
 #include "terrain/terrain_rows.h"
 #include "terrain/world_file.h"
-#include "unit/raster_files.h"
+#include "unit/raster_input.h"
 
 namespace lodbench::terrain {
 namespace {
@@ -36,34 +36,14 @@ std::string floats(const std::vector<float>& samples) {
     return bytes.str();
 }
 
-class Traps : public testing::Test {
+class Traps : public RasterInput {
 protected:
-    TerrainSource source(const std::string& name, std::string_view bytes) {
-        TerrainSource made;
-        made.file = folder_.write(name, bytes);
-        return made;
-    }
     LoadedTerrain load(const std::string& name, std::string_view bytes) {
         return load_terrain_with_provenance(source(name, bytes));
-    }
-    std::string refusal(const TerrainSource& given) {
-        try {
-            (void)load_terrain(given);
-        } catch (const InputError& error) {
-            const std::string text = error.what();
-            EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-            EXPECT_THAT(text, StartsWith(folder_.path().string() + "/"));
-            return text.substr(std::min(text.size(), folder_.path().string().size() + 1));
-        }
-        return "accepted";
-    }
-    std::string refusal(const std::string& name, std::string_view bytes) {
-        return refusal(source(name, bytes));
     }
     static std::vector<float> heights(const LoadedTerrain& loaded) {
         return {loaded.field->samples().begin(), loaded.field->samples().end()};
     }
-    test::TemporaryFolder folder_;
 };
 
 class ElevationTraps : public Traps {
