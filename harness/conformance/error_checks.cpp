@@ -28,7 +28,7 @@ Errors measure_errors(const Subject& subject, const TerrainPointer& terrain,
                       const Quality& quality) {
     const measure::ReferenceTerrain reference(terrain->samples(), terrain->info());
     const double bound = std::numeric_limits<double>::infinity();
-    measure::ErrorPool all, visible;
+    measure::ErrorPool all;
     Errors errors;
     Session session(subject, terrain, quality.settings);
     Random random(subject.seed);
@@ -40,8 +40,7 @@ Errors measure_errors(const Subject& subject, const TerrainPointer& terrain,
         require_finite(captured, fmt::format("{}, camera {}", quality.name, i));
         measure::DrawnSurface(std::move(captured), terrain->info())
             .displacements(terrain->samples(), displacements);
-        const auto found =
-            measure::measure_samples(reference, camera, displacements, bound, all, visible);
+        const auto found = measure::measure_samples(reference, camera, displacements, bound, all);
         if (found.worst.px <= errors.worst.px) continue;
         errors.worst = found.worst;
         errors.worst_camera = i;

@@ -28,9 +28,10 @@ struct Shows {
 class PixelMeter {
 public:
     PixelMeter(const ReferenceTerrain& terrain, const DrawnSurface& surface, const Camera& camera,
-               std::span<const float> depth)
+               std::span<const ReferenceHit> hits, std::span<const float> depth)
         : terrain_(terrain),
           surface_(surface),
+          hits_(hits),
           pixels_(camera),
           near_(camera.near_plane),
           depth_(depth),
@@ -57,7 +58,7 @@ public:
             errors.drawn_px[index] = (mark & kSkirtMark) != 0 || drawn_depth == kInfinity
                                          ? kNothing
                                          : drawn_error(x, y, drawn_depth, row);
-            const ReferenceHit hit = terrain_.cast(pixels_.eye(), ray(x, y), near_);
+            const ReferenceHit& hit = hits_[index];
             errors.reference_px[index] =
                 hit.certain < kInfinity ? reference_error(x, y, hit.certain, row) : kNothing;
             for (const float px : {errors.drawn_px[index], errors.reference_px[index]}) {
@@ -331,6 +332,7 @@ private:
 
     const ReferenceTerrain& terrain_;
     const DrawnSurface& surface_;
+    std::span<const ReferenceHit> hits_;
     PixelProjection pixels_;
     double near_;
     std::span<const float> depth_;
@@ -359,13 +361,13 @@ void measure_silhouette(const std::vector<Shows>& shows, std::size_t width, std:
 }  // namespace
 
 PixelErrors measure_pixels(const ReferenceTerrain& terrain, const DrawnSurface& surface,
-                           const Camera& camera, std::span<const float> depth, double bound,
-                           ErrorPool& pool) {
+                           const Camera& camera, std::span<const ReferenceHit> hits,
+                           std::span<const float> depth, double bound, ErrorPool& pool) {
     const std::size_t width = std::size_t(camera.viewport.width);
     const std::size_t height = std::size_t(camera.viewport.height);
-    if (depth.size() != width * height) {
-        throw ContractError(fmt::format("measure_pixels: {} depths, expected {} x {}", depth.size(),
-                                        width, height));
+    if (depth.size() != width * height || hits.size() != depth.size()) {
+        throw ContractError(fmt::format("measure_pixels: {} depths and {} hits, expected {} x {}",
+                                        depth.size(), hits.size(), width, height));
     }
     PixelErrors errors;
     errors.drawn_px.resize(depth.size());
@@ -373,7 +375,7 @@ PixelErrors measure_pixels(const ReferenceTerrain& terrain, const DrawnSurface& 
     errors.marks.resize(depth.size());
     std::vector<Shows> shows(depth.size());
     std::vector<PixelMeter::Row> rows(height);
-    const PixelMeter meter(terrain, surface, camera, depth);
+    const PixelMeter meter(terrain, surface, camera, hits, depth);
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         meter.measure_row(y, bound, pool, errors, shows, rows[y]);
     });

@@ -50,6 +50,7 @@
 #include "measure/drawn_surface.h"
 #include "measure/error_pool.h"
 #include "measure/reference_terrain.h"
+#include "measure/reference_view.h"
 
 namespace lodbench::measure {
 
@@ -88,11 +89,12 @@ struct PixelErrors {
 };
 
 /// `depth`: the drawn image's reversed depth buffer, near / depth along the view axis and 0 for
-/// sky, row by row from the top. `pool` takes the errors of both directions. Parallel; the same to
-/// the bit each time. Throws ContractError where `depth` has another size than the camera's
-/// viewport.
+/// sky, row by row from the top; `hits` as of reference_hits. `pool` takes the errors of both
+/// directions. Parallel; the same to the bit each time. Throws ContractError where `depth` has
+/// another size than the camera's viewport.
 [[nodiscard]] PixelErrors measure_pixels(const ReferenceTerrain& terrain,
                                          const DrawnSurface& surface, const Camera& camera,
+                                         std::span<const ReferenceHit> hits,
                                          std::span<const float> depth, double bound,
                                          ErrorPool& pool);
 

@@ -111,7 +111,7 @@ SampleError error_of(const PixelProjection& pixels, const glm::dvec3& up, const 
 
 SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& camera,
                              std::span<const float> displacements, double bound, ErrorPool& all,
-                             ErrorPool& visible) {
+                             const std::optional<VisibleErrors>& visible) {
     struct Partial {
         SampleErrors errors;
         ErrorSums all, visible;
@@ -133,9 +133,8 @@ SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& came
                 ++partial.errors.heights.count;
                 partial.errors.heights.sum_of_squares += double(displacement) * displacement;
             }
-            if (error.true_point_in_view &&
-                terrain.sees(camera.position, camera.near_plane / truth.z, row, column)) {
-                visible.tally(error.px);
+            if (visible && visible->view.sees(index)) {
+                visible->pool.tally(error.px);
                 partial.visible.add(error.px, bound);
                 keep_worst({error.px, row, column}, partial.errors.worst_visible);
             }
@@ -143,7 +142,7 @@ SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& came
     SampleErrors errors;
     for (const Partial& partial : partials) {
         all.add(partial.all);
-        visible.add(partial.visible);
+        if (visible) visible->pool.add(partial.visible);
         keep_worst(partial.errors.worst, errors.worst);
         keep_worst(partial.errors.worst_visible, errors.worst_visible);
         errors.clipped += partial.errors.clipped;

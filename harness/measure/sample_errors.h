@@ -3,12 +3,14 @@
 // moves from one frame to the next.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "api/camera.h"
 #include "measure/error_pool.h"
 #include "measure/reference_terrain.h"
+#include "measure/reference_view.h"
 
 namespace lodbench::measure {
 
@@ -28,6 +30,12 @@ struct HeightSums {
     }
 };
 
+/// What takes the errors of samples that a camera sees.
+struct VisibleErrors {
+    const ReferenceView& view;  ///< of the camera that is measured
+    ErrorPool& pool;
+};
+
 /// One frame's samples in view: those whose true or drawn point lies in the frustum.
 struct SampleErrors {
     /// An uncovered one is worse than any other; of equals the first in row order.
@@ -38,12 +46,12 @@ struct SampleErrors {
 
 /// Screen error: |pi(x, y, h) - pi(x, y, l_f)| in pixels of every sample in view, +infinity where
 /// `displacements` (l_f - h in metres, as DrawnSurface gives it) is NaN. `all` takes every error,
-/// `visible` those of samples that the camera sees: the true point lies in the frustum, and the way
-/// to it is clear of the lower envelope. `bound`: the claimed bound, +infinity without one.
-/// Parallel; the same to the bit each time.
+/// `visible`, where there is one, those of the samples that its view sees. `bound`: the claimed
+/// bound, +infinity without one. Parallel; the same to the bit each time.
 [[nodiscard]] SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& camera,
                                            std::span<const float> displacements, double bound,
-                                           ErrorPool& all, ErrorPool& visible);
+                                           ErrorPool& all,
+                                           const std::optional<VisibleErrors>& visible = {});
 
 /// What popped between two frames.
 struct Popping {

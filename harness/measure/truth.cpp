@@ -90,18 +90,19 @@ void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface
 }
 
 FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::uint8_t> drawn_rgb,
-                               std::vector<std::uint8_t> reference_rgb) {
+                               const ReferenceView& view) {
     if (!surface_) throw ContractError("TruthMeter::measure: no frame was taken");
     frame_screen_.clear();
     frame_visible_.clear();
     frame_pixel_.clear();
-    const SampleErrors samples = measure_samples(terrain_, now_.camera, now_.displacements, bound_,
-                                                 frame_screen_, frame_visible_);
+    const SampleErrors samples =
+        measure_samples(terrain_, now_.camera, now_.displacements, bound_, frame_screen_,
+                        VisibleErrors{view, frame_visible_});
     PixelErrors pixels =
-        measure_pixels(terrain_, *surface_, now_.camera, depth, bound_, frame_pixel_);
+        measure_pixels(terrain_, *surface_, now_.camera, view.hits, depth, bound_, frame_pixel_);
     const Viewport& size = now_.camera.viewport;
     const ImageDifference image = image_difference({drawn_rgb, size.width, size.height},
-                                                   {reference_rgb, size.width, size.height});
+                                                   {view.picture, size.width, size.height});
 
     FrameTruth truth;
     const ErrorSummary screen = frame_screen_.summary(false);
@@ -149,13 +150,13 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
     if (image.ssim) ssim_.push_back(*image.ssim);
     now_.measured = true;
     now_.height_rmse = truth.height_rmse_m;
-    keep_if_worst(truth, pixel, std::move(pixels), std::move(drawn_rgb), std::move(reference_rgb));
+    keep_if_worst(truth, pixel, std::move(pixels), std::move(drawn_rgb), view.picture);
     return truth;
 }
 
 void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixel,
                                PixelErrors&& pixels, std::vector<std::uint8_t>&& drawn_rgb,
-                               std::vector<std::uint8_t>&& reference_rgb) {
+                               const std::vector<std::uint8_t>& reference_rgb) {
     const auto rank = [](const ErrorSummary& errors) {
         return std::tuple(errors.p999.value_or(-1), errors.uncovered, errors.rms.value_or(-1));
     };
@@ -165,7 +166,7 @@ void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixe
     worst_->frame = now_.frame;
     worst_->camera = now_.camera;
     worst_->drawn_rgb = std::move(drawn_rgb);
-    worst_->reference_rgb = std::move(reference_rgb);
+    worst_->reference_rgb = reference_rgb;
     worst_->pixels = std::move(pixels);
     worst_->truth = truth;
     worst_->pixel_max_covered = pixel.max_covered;
@@ -183,8 +184,8 @@ Fewest TruthMeter::find_fewest(double target_px, ErrorBound bound) const {
     std::vector<float> displacements(terrain_.heights().size());
     DrawnSurface(surface_of(greedy, terrain_, now_.camera), terrain_.info())
         .displacements(terrain_.heights(), displacements);
-    ErrorPool all, visible;
-    (void)measure_samples(terrain_, now_.camera, displacements, kInfinity, all, visible);
+    ErrorPool all;
+    (void)measure_samples(terrain_, now_.camera, displacements, kInfinity, all);
     const ErrorSummary errors = all.summary(false);
     const auto measured = bound == ErrorBound::max ? errors.max : errors.p999;
     return {target_px, greedy.in_view, measured.value_or(0)};
@@ -205,9 +206,11 @@ void TruthMeter::find_economy(std::uint64_t triangles) {
 }
 
 void TruthMeter::measure_realtime(int frame, const Camera& camera, CapturedSurface&& surface,
+                                  std::span<const ReferenceHit> hits,
                                   std::span<const float> depth) {
     const DrawnSurface drawn(std::move(surface), terrain_.info());
-    const PixelErrors pixels = measure_pixels(terrain_, drawn, camera, depth, bound_, realtime_);
+    const PixelErrors pixels =
+        measure_pixels(terrain_, drawn, camera, hits, depth, bound_, realtime_);
     keep_worst(worst_pixel(pixels, camera.viewport.width), frame, realtime_worst_px_,
                total_.pixel_realtime_worst);
 }

@@ -15,6 +15,7 @@
 #include "measure/image_difference.h"
 #include "measure/pixel_errors.h"
 #include "measure/reference_terrain.h"
+#include "measure/reference_view.h"
 #include "measure/sample_errors.h"
 
 namespace lodbench::measure {
@@ -106,19 +107,19 @@ public:
     /// the two goes into `before`.
     void take(int frame, const Camera& camera, CapturedSurface&& surface, FrameTruth* before);
 
-    /// Measures the frame that was taken last: its depth image (see measure_pixels) and both shaded
-    /// pictures, RGB, row 0 at the top.
+    /// Measures the frame that was taken last: its depth image (see measure_pixels) and shaded
+    /// picture, RGB, row 0 at the top. `view` is of the same camera, its picture of the same size.
     [[nodiscard]] FrameTruth measure(std::span<const float> depth,
                                      std::vector<std::uint8_t> drawn_rgb,
-                                     std::vector<std::uint8_t> reference_rgb);
+                                     const ReferenceView& view);
 
     /// Of the frame that was measured last, of which the method drew `triangles` with an area.
     /// Takes seconds. Nothing where no sample in view is covered.
     void find_economy(std::uint64_t triangles);
 
-    /// The same frame as the real-time replay drew it.
+    /// The same frame as the real-time replay drew it; `hits` as of reference_hits.
     void measure_realtime(int frame, const Camera& camera, CapturedSurface&& surface,
-                          std::span<const float> depth);
+                          std::span<const ReferenceHit> hits, std::span<const float> depth);
 
     [[nodiscard]] TruthSummary summary() const;
     /// By P99.9 of the pixel error, then uncovered pixels, then RMS; nothing before the first
@@ -137,7 +138,7 @@ private:
     };
     void keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixel, PixelErrors&& pixels,
                        std::vector<std::uint8_t>&& drawn_rgb,
-                       std::vector<std::uint8_t>&& reference_rgb);
+                       const std::vector<std::uint8_t>& reference_rgb);
 
     ReferenceTerrain terrain_;
     std::optional<double> claimed_;

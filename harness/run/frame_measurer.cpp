@@ -50,8 +50,15 @@ void FrameMeasurer::measure(results::FrameRecord& record) {
     stage_->draw_picture();
     const std::vector<float> depth = stage_->read_depth();
     std::vector<std::uint8_t> drawn = stage_->read_color();
-    stage_->draw_reference_picture(truth_);
-    record.truth = meter_->measure(depth, std::move(drawn), stage_->read_color());
+    record.truth = meter_->measure(depth, std::move(drawn), reference_view());
+}
+
+measure::ReferenceView FrameMeasurer::reference_view() {
+    const Camera& camera = stage_->camera();
+    const measure::HiddenGround hidden(meter_->terrain(), camera);
+    stage_->draw_reference_picture(truth_, &hidden);
+    return {measure::seen_samples(meter_->terrain(), camera, hidden),
+            measure::reference_hits(meter_->terrain(), camera), stage_->read_color()};
 }
 
 void FrameMeasurer::find_economy() {
@@ -62,7 +69,9 @@ void FrameMeasurer::measure_realtime(int frame) {
     if (!meter_) return;
     measure::CapturedSurface surface = capture();
     stage_->draw_picture();
-    meter_->measure_realtime(frame, stage_->camera(), std::move(surface), stage_->read_depth());
+    meter_->measure_realtime(frame, stage_->camera(), std::move(surface),
+                             measure::reference_hits(meter_->terrain(), stage_->camera()),
+                             stage_->read_depth());
 }
 
 void FrameMeasurer::finish(results::CellResult& result) const {

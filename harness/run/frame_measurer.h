@@ -47,6 +47,8 @@ private:
     Stage* stage_;
     std::shared_ptr<const terrain::HeightField> truth_;  ///< outlives the stage
     std::optional<measure::TruthMeter> meter_;
+    [[nodiscard]] measure::ReferenceView reference_view();
+
     std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
 };
 

@@ -73,6 +73,21 @@ std::vector<std::uint16_t> block_indices() {
 /// reaches a pixel is left out.
 constexpr double kSlack = 1e-6;
 
+/// Whether the block that begins at a sample is hidden in all its parts.
+bool is_hidden(const measure::HiddenGround& hidden, const TerrainInfo& info, int first_row,
+               int first_column) {
+    constexpr int kPart = measure::HiddenGround::kBlockCells;
+    static_assert(kBlockCells % kPart == 0);
+    const int end_row = std::min(first_row + kBlockCells, info.rows - 1);
+    const int end_column = std::min(first_column + kBlockCells, info.columns - 1);
+    for (int row = first_row; row < end_row; row += kPart) {
+        for (int column = first_column; column < end_column; column += kPart) {
+            if (!hidden.block(row / kPart, column / kPart)) return false;
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 ReferencePicture::ReferencePicture(gl::Device& device,
@@ -120,7 +135,8 @@ void ReferencePicture::find_height_ranges() {
     }
 }
 
-std::vector<glm::ivec2> ReferencePicture::visible_blocks(const Camera& camera) const {
+std::vector<glm::ivec2> ReferencePicture::visible_blocks(
+    const Camera& camera, const measure::HiddenGround* hidden) const {
     const TerrainInfo& info = terrain_->info();
     const measure::BoxInView in_view(camera, kSlack);
     std::vector<glm::ivec2> visible;
@@ -133,7 +149,8 @@ std::vector<glm::ivec2> ReferencePicture::visible_blocks(const Camera& camera) c
                           std::min(column + kBlockCells, info.columns - 1));
         const HeightRange& range = height_ranges_[i];
         if (in_view({north_west.x, south_east.y, range.low},
-                    {south_east.x, north_west.y, range.high})) {
+                    {south_east.x, north_west.y, range.high}) &&
+            !(hidden != nullptr && is_hidden(*hidden, info, row, column))) {
             visible.emplace_back(column, row);
         }
     }
@@ -154,8 +171,9 @@ void ReferencePicture::stage_heights(const glm::ivec2& north_west, float* height
     }
 }
 
-void ReferencePicture::draw(const Camera& camera, const std::function<void()>& after_batch) {
-    const std::vector<glm::ivec2> blocks = visible_blocks(camera);
+void ReferencePicture::draw(const Camera& camera, const measure::HiddenGround* hidden,
+                            const std::function<void()>& after_batch) {
+    const std::vector<glm::ivec2> blocks = visible_blocks(camera, hidden);
     heights_.bind(heights_unit_);
     for (std::size_t first = 0; first < blocks.size(); first += kBatchBlocks) {
         const auto batch = std::span(blocks).subspan(

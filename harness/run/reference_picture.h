@@ -11,6 +11,7 @@
 #include "gl/device.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "measure/hidden_ground.h"
 #include "terrain/height_field.h"
 
 namespace lodbench::run {
@@ -37,8 +38,10 @@ public:
     ///
     /// Changes no pipeline state, and of what a method may have bound only program and vertex
     /// array, which every draw call of gl::Device binds anew.
+    /// `hidden`, where it is given, is the camera's: blocks that it hides are not drawn.
     void draw(
-        const Camera& camera, const std::function<void()>& after_batch = [] {});
+        const Camera& camera, const measure::HiddenGround* hidden = nullptr,
+        const std::function<void()>& after_batch = [] {});
 
 private:
     struct HeightRange {
@@ -46,7 +49,8 @@ private:
         float high = 0;
     };
     void find_height_ranges();
-    [[nodiscard]] std::vector<glm::ivec2> visible_blocks(const Camera& camera) const;
+    [[nodiscard]] std::vector<glm::ivec2> visible_blocks(const Camera& camera,
+                                                         const measure::HiddenGround* hidden) const;
     void stage_heights(const glm::ivec2& north_west, float* heights) const;
 
     gl::Device& device_;

@@ -255,13 +255,14 @@ void Stage::draw(const View& view) {
     guarded(Call::draw, [&] { method_->draw(view); });
 }
 
-void Stage::draw_reference_picture(const std::shared_ptr<const terrain::HeightField>& whole) {
+void Stage::draw_reference_picture(const std::shared_ptr<const terrain::HeightField>& whole,
+                                   const measure::HiddenGround* hidden) {
     if (!reference_picture_) {
         reference_picture_ = std::make_unique<ReferencePicture>(*device_, whole);
     }
     begin_picture(picture_view(camera_));
     // A large terrain takes a software rasteriser longer than silence is allowed to last.
-    reference_picture_->draw(camera_, [&] { signs_.enter(Call::none); });
+    reference_picture_->draw(camera_, hidden, [&] { signs_.enter(Call::none); });
     // Left to the next call of the method, they would be laid at its door.
     if (const auto errors = device_->take_errors(); !errors.empty()) {
         throw EnvironmentError(

@@ -91,7 +91,8 @@ TEST_F(Cliff, depths_of_rays_beside_the_pixels_are_found_between_the_pixels_rays
     }
     ASSERT_GT(off, 500);
     ErrorPool pool;
-    const PixelErrors errors = measure_pixels(reference, surface, camera, depth, kInfinity, pool);
+    const PixelErrors errors = measure_pixels(
+        reference, surface, camera, reference_hits(reference, camera), depth, kInfinity, pool);
     EXPECT_LE(*pool.summary(false).max, kExactPixel);
     // At the face's end the ray beside a pixel may meet it and no other.
     EXPECT_LE(errors.undecided_pixels, 2U);

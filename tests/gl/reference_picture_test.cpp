@@ -31,8 +31,8 @@ Picture picture_of_method(run::Stage& stage) {
     return {stage.read_color(), stage.read_depth()};
 }
 
-Picture reference_picture(run::Stage& stage) {
-    stage.draw_reference_picture(terrain::whole_field(stage.terrain()));
+Picture reference_picture(run::Stage& stage, const measure::HiddenGround* hidden = nullptr) {
+    stage.draw_reference_picture(terrain::whole_field(stage.terrain()), hidden);
     return {stage.read_color(), stage.read_depth()};
 }
 
@@ -69,6 +69,11 @@ void expect_equal_pictures(Flight& flight, const Camera& camera, std::ptrdiff_t 
     const Picture method = picture_of_method(flight.stage());
     const Picture reference = reference_picture(flight.stage());
     EXPECT_EQ(differing_pixels(method, reference), 0) << "of " << reference.depth.size();
+    const auto whole = terrain::whole_field(flight.stage().terrain());
+    const measure::ReferenceTerrain ground(whole->samples(), whole->info());
+    const measure::HiddenGround hidden(ground, flight.stage().camera());
+    EXPECT_EQ(differing_pixels(reference_picture(flight.stage(), &hidden), reference), 0)
+        << "without what is hidden";
     EXPECT_GE(reference.covered(), least_covered);
 }
 
@@ -221,7 +226,7 @@ TEST(ReferencePicture, holds_a_batch_of_blocks_however_large_the_terrain_and_lea
         int batches = 0;
         gl::Query primitives(device, "test: primitives", GL_PRIMITIVES_GENERATED);
         primitives.begin();
-        reference.draw(stage.camera(), [&] { ++batches; });
+        reference.draw(stage.camera(), nullptr, [&] { ++batches; });
         primitives.end();
         EXPECT_EQ(primitives.wait(), 2U * 1024 * 1024);
         EXPECT_EQ(batches, 4);
@@ -229,7 +234,7 @@ TEST(ReferencePicture, holds_a_batch_of_blocks_however_large_the_terrain_and_lea
         EXPECT_LE(device.allocated_bytes() - bytes, 64U * (65 * 65 * 4 + 8) + 64 * 64 * 6 * 2);
 
         calls = device.draw_calls();
-        reference.draw(camera_at({512600, -2900, 9000}, 0, 80), [&] { ++batches; });
+        reference.draw(camera_at({512600, -2900, 9000}, 0, 80), nullptr, [&] { ++batches; });
         EXPECT_EQ(device.draw_calls(), calls) << "nothing of the terrain is in the sky";
         EXPECT_EQ(batches, 4);
     }

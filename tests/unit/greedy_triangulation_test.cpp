@@ -24,8 +24,8 @@ ErrorSummary measured(const GreedyTriangulation& greedy, const ReferenceTerrain&
     std::vector<float> displacements(terrain.heights().size());
     DrawnSurface(surface_of(greedy, terrain, camera), terrain.info())
         .displacements(terrain.heights(), displacements);
-    ErrorPool all, visible;
-    (void)measure_samples(terrain, camera, displacements, 1, all, visible);
+    ErrorPool all;
+    (void)measure_samples(terrain, camera, displacements, 1, all);
     return all.summary(false);
 }
 

@@ -75,8 +75,8 @@ double measured(const NeededTiles& needed, const terrain::HeightField& field, co
         }
     });
     const ReferenceTerrain terrain(field.samples(), info);
-    ErrorPool all, visible;
-    return measure_samples(terrain, camera, displacements, 1, all, visible).worst.px;
+    ErrorPool all;
+    return measure_samples(terrain, camera, displacements, 1, all).worst.px;
 }
 
 TEST(NeededTiles, keep_the_target_as_the_harness_measures_it_and_cover_the_view) {

@@ -63,8 +63,11 @@ Measured measured(const Ground& ground, const Camera& camera,
     ErrorPool all;
     ErrorPool visible;
     Measured found;
-    found.errors =
-        measure_samples(ground.terrain(), camera, displacements, kInfinity, all, visible);
+    const ReferenceTerrain terrain = ground.terrain();
+    ReferenceView view;
+    view.seen = seen_samples(terrain, camera, {terrain, camera});
+    found.errors = measure_samples(terrain, camera, displacements, kInfinity, all,
+                                   VisibleErrors{view, visible});
     found.all = all.summary(false);
     found.visible = visible.summary(false);
     return found;
