@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <new>
@@ -38,30 +37,46 @@ double ErrorPool::value_of(std::size_t bucket) {
 template <typename Visit>
 void ErrorPool::visit_buckets(const Visit& visit) const {
     for (std::size_t page = 0; page < kPages; ++page) {
-        if (!touched_[page].load(std::memory_order_relaxed)) continue;
+        if (!touched_[page]) continue;
         for (std::size_t i = page * kPageSize; i < (page + 1) * kPageSize; ++i) {
             if (buckets_[i] != 0 && visit(i, buckets_[i])) return;
         }
     }
 }
 
-void ErrorPool::tally(double error) {
+void ErrorPool::tally(ErrorBatch& batch, double error, double bound) {
     if (!(error >= 0)) {
         throw ContractError(
             fmt::format("ErrorPool: an error of {} px, expected at least 0", error));
     }
+    batch.sums.add(error, bound);
     if (std::isinf(error)) return;  // summed, and above every bucket
-    if (error < kLeastError) {
-        zeros_.fetch_add(1, std::memory_order_relaxed);
-        return;
-    }
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(error) >> unsigned(52 - kBucketBits);
-    const std::size_t bucket = std::min<std::size_t>(
-        bits - (std::uint64_t(1023 + kLeastExponent) << unsigned(kBucketBits)),
-        kPages * kPageSize - 1);
-    std::atomic_ref<std::uint64_t>(buckets_[bucket]).fetch_add(1, std::memory_order_relaxed);
-    std::atomic<bool>& touched = touched_[bucket / kPageSize];
-    if (!touched.load(std::memory_order_relaxed)) touched.store(true, std::memory_order_relaxed);
+    batch.buckets.push_back(error < kLeastError ? kZeroBucket
+                                                : std::uint32_t(std::min<std::size_t>(
+                                                      bits - (std::uint64_t(1023 + kLeastExponent)
+                                                              << unsigned(kBucketBits)),
+                                                      kPages * kPageSize - 1)));
+    constexpr std::size_t kFull = 4096;
+    if (batch.buckets.size() == kFull) flush(batch);
+}
+
+void ErrorPool::flush(ErrorBatch& batch) {
+    const std::lock_guard lock(flushing_);
+    for (const std::uint32_t bucket : batch.buckets) {
+        if (bucket == kZeroBucket) {
+            ++zeros_;
+            continue;
+        }
+        ++buckets_[bucket];
+        touched_[bucket / kPageSize] = true;
+    }
+    batch.buckets.clear();
+}
+
+void ErrorPool::add(ErrorBatch& batch) {
+    flush(batch);
+    sums_.add(batch.sums);
 }
 
 void ErrorPool::add(const ErrorPool& other) {
@@ -79,7 +94,7 @@ void ErrorPool::clear() {
         buckets_[bucket] = 0;
         return false;
     });
-    for (std::atomic<bool>& touched : touched_) touched = false;
+    touched_.fill(false);
     zeros_ = 0;
     sums_ = {};
 }

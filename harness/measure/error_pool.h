@@ -8,13 +8,14 @@
 // bit, whatever the threads did.
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <vector>
 
 namespace lodbench::measure {
 
@@ -41,6 +42,13 @@ struct ErrorSums {
     void add(const ErrorSums& other);
 };
 
+/// One stretch's errors on their way into a pool: their sums, and some that are not in the
+/// histogram yet.
+struct ErrorBatch {
+    ErrorSums sums;
+    std::vector<std::uint32_t> buckets;
+};
+
 /// Pixels. +infinity where uncovered places reach into the figure; absent where there was no error
 /// at all.
 struct ErrorSummary {
@@ -57,11 +65,12 @@ public:
 
     ErrorPool();
 
-    /// Counts one error in the histogram. Thread-safe. Throws ContractError for NaN or a negative
-    /// one.
-    void tally(double error);
-    /// What tally does not know, of the same errors.
-    void add(const ErrorSums& sums) { sums_.add(sums); }
+    /// Takes one error: `error` and `bound` as of ErrorSums::add. Thread-safe for batches of
+    /// different threads: most calls touch the batch alone, for threads that count in one histogram
+    /// at the same time wait for each other. Throws ContractError for NaN or a negative error.
+    void tally(ErrorBatch& batch, double error, double bound);
+    /// The end of a batch. Sums are rounded in the order of these calls; not thread-safe.
+    void add(ErrorBatch& batch);
     void add(const ErrorPool& other);
     void clear();
 
@@ -81,8 +90,10 @@ private:
         39;  // beyond any projection of what the near plane lets through
     static constexpr std::size_t kPages = kGreatestExponent - kLeastExponent + 1;
     static constexpr std::size_t kPageSize = std::size_t{1} << unsigned(kBucketBits);
+    static constexpr std::uint32_t kZeroBucket = kPages * kPageSize;
 
     [[nodiscard]] static double value_of(std::size_t bucket);
+    void flush(ErrorBatch& batch);
     /// Calls `visit(bucket, count)` upwards for the buckets of pages that errors fell into, until
     /// it returns true.
     template <typename Visit>
@@ -90,8 +101,9 @@ private:
 
     // One page an exponent, from calloc: pages that no error falls into cost nothing.
     std::unique_ptr<std::uint64_t[], Free> buckets_;
-    std::array<std::atomic<bool>, kPages> touched_{};
-    std::atomic<std::uint64_t> zeros_{0};
+    std::array<bool, kPages> touched_{};
+    std::uint64_t zeros_ = 0;
+    std::mutex flushing_;
     ErrorSums sums_;
 };
 

@@ -39,7 +39,7 @@ public:
           has_skirts_(surface.skirt_triangle_count() > 0) {}
 
     struct Row {
-        ErrorSums sums;
+        ErrorBatch errors;
         std::uint64_t cracks = 0, skirts = 0, silhouettes = 0, clipped = 0, unjudged = 0;
         std::uint64_t undecided = 0;
     };
@@ -63,8 +63,7 @@ public:
                 hit.certain < kInfinity ? reference_error(x, y, hit.certain, row) : kNothing;
             for (const float px : {errors.drawn_px[index], errors.reference_px[index]}) {
                 if (std::isnan(px)) continue;
-                pool.tally(px);
-                row.sums.add(px, bound);
+                pool.tally(row.errors, px, bound);
             }
             shows[index].drawn = drawn_depth < kInfinity;
             shows[index].reference = reference_shows(x, y, hit, shows[index].drawn);
@@ -379,8 +378,8 @@ PixelErrors measure_pixels(const ReferenceTerrain& terrain, const DrawnSurface& 
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         meter.measure_row(y, bound, pool, errors, shows, rows[y]);
     });
-    for (const PixelMeter::Row& row : rows) {
-        pool.add(row.sums);
+    for (PixelMeter::Row& row : rows) {
+        pool.add(row.errors);
         errors.crack_pixels += row.cracks;
         errors.skirt_pixels += row.skirts;
         errors.silhouette_pixels += row.silhouettes;

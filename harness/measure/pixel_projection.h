@@ -28,8 +28,8 @@ public:
         return {glm::dot(right_, v), glm::dot(up_, v), glm::dot(forward_, v)};
     }
     [[nodiscard]] bool in_view(const glm::dvec3& point) const {
-        return point.z >= near_ && std::abs(point.x) <= tangents_.x * point.z &&
-               std::abs(point.y) <= tangents_.y * point.z;
+        return (point.z >= near_) & (std::abs(point.x) <= tangents_.x * point.z) &
+               (std::abs(point.y) <= tangents_.y * point.z);
     }
 
     struct Distance {
@@ -48,9 +48,13 @@ public:
             behind.z = near_;
             clipped = true;
         }
+        return {unclipped_distance(a, b), clipped};
+    }
+    /// Of points that are both beyond the near plane.
+    [[nodiscard]] double unclipped_distance(const glm::dvec3& a, const glm::dvec3& b) const {
         const double x = a.x / a.z - b.x / b.z;
         const double y = a.y / a.z - b.y / b.z;
-        return {lambda_ * std::sqrt(x * x + y * y), clipped};
+        return lambda_ * std::sqrt(x * x + y * y);
     }
 
     /// World direction of the ray through image point (x, y), pixels from the top left corner; its

@@ -48,13 +48,42 @@ bool may_be_in_view(const ReferenceTerrain& terrain, const BoxInView& in_view,
                    {glm::dvec2(north_east), heights.high + displacement.high});
 }
 
-/// Calls `body(partial, row, column, index, local true point)` for all samples of the blocks that
-/// may be in view, one row of blocks a task, and returns the rows' partials in order.
+/// Points of a run of samples side by side, in a camera's frame. One array a coordinate, and no
+/// branch in what is done with them: the compiler takes several samples at a time.
+struct Run {
+    std::array<double, kBlock> x, y, z;
+    [[nodiscard]] glm::dvec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+struct Samples {
+    int row, column, count;  ///< `count` side by side, at most kBlock
+    std::size_t first;       ///< index of the first
+};
+
+/// Where the surface lies at a run of samples: the true heights, or those `displaced` metres above.
+Run points_of(const ReferenceTerrain& terrain, const PixelProjection& pixels,
+              const Samples& samples, const float* displaced = nullptr) {
+    const TerrainInfo& info = terrain.info();
+    const float* heights = &terrain.heights()[samples.first];
+    const double y = info.position(samples.row, samples.column).y;
+    Run run;
+    for (int i = 0; i < samples.count; ++i) {
+        const double x = info.origin.x + info.spacing.x * double(samples.column + i);
+        const double z = double(heights[i]) + (displaced == nullptr ? 0.0 : double(displaced[i]));
+        const glm::dvec3 local = pixels.local({x, y, z});
+        run.x[std::size_t(i)] = local.x;
+        run.y[std::size_t(i)] = local.y;
+        run.z[std::size_t(i)] = local.z;
+    }
+    return run;
+}
+
+/// Calls `body(partial, samples)` for all runs of samples of the blocks that may be in view, one
+/// row of blocks a task, and returns the rows' partials in order.
 template <typename Partial, typename Body>
 std::vector<Partial> for_samples(const ReferenceTerrain& terrain, const Camera& camera,
                                  std::span<const std::span<const float>> fields, const Body& body) {
     const TerrainInfo& info = terrain.info();
-    const PixelProjection pixels(camera);
     const BoxInView in_view(camera, kSlack);
     const int block_rows = (info.rows + kBlock - 1) / kBlock;
     std::vector<Partial> partials(std::size_t(block_rows), Partial{});
@@ -69,11 +98,9 @@ std::vector<Partial> for_samples(const ReferenceTerrain& terrain, const Camera& 
                 continue;
             }
             for (int row = rect.row; row < rect.row + rect.rows; ++row) {
-                for (int column = first; column < first + rect.columns; ++column) {
-                    const std::size_t index =
-                        std::size_t(row) * std::size_t(info.columns) + std::size_t(column);
-                    body(partial, row, column, index, pixels.local(terrain.sample(row, column)));
-                }
+                body(partial,
+                     Samples{row, first, rect.columns,
+                             std::size_t(row) * std::size_t(info.columns) + std::size_t(first)});
             }
         }
     });
@@ -84,27 +111,66 @@ void keep_worst(const WorstSample& candidate, WorstSample& worst) {
     if (candidate.px > worst.px) worst = candidate;
 }
 
-/// Error of one sample in pixels; negative where it is not in view.
-struct SampleError {
-    double px = -1;
-    bool clipped = false;
-    bool true_point_in_view = false;
+/// 1 where a point of the run lies in the frustum, else 0; `displaced` metres upward, never where
+/// NaN.
+using Flags = std::array<double, kBlock>;
+Flags in_view(const PixelProjection& pixels, const Run& run, int count) {
+    Flags flags;
+    for (std::size_t i = 0; i < std::size_t(count); ++i) {
+        flags[i] = pixels.in_view(run.at(i)) ? 1.0 : 0.0;
+    }
+    return flags;
+}
+
+Run raised(const Run& run, const glm::dvec3& up, const float* displacements, int count) {
+    Run result;
+    for (std::size_t i = 0; i < std::size_t(count); ++i) {
+        const double displacement = displacements[i];
+        result.x[i] = run.x[i] + up.x * displacement;
+        result.y[i] = run.y[i] + up.y * displacement;
+        result.z[i] = run.z[i] + up.z * displacement;
+    }
+    return result;
+}
+
+/// Between the points of two runs, pixels; meaningless where one is nearer than the near plane.
+std::array<double, kBlock> unclipped_distances(const PixelProjection& pixels, const Run& a,
+                                               const Run& b, int count) {
+    std::array<double, kBlock> px;
+    for (std::size_t i = 0; i < std::size_t(count); ++i) {
+        px[i] = pixels.unclipped_distance(a.at(i), b.at(i));
+    }
+    return px;
+}
+
+/// Errors of a run of samples in pixels; negative where one is not in view.
+struct RunErrors {
+    std::array<double, kBlock> px;
+    std::array<bool, kBlock> clipped{};
 };
 
-SampleError error_of(const PixelProjection& pixels, const glm::dvec3& up, const glm::dvec3& truth,
-                     float displacement) {
-    SampleError error;
-    error.true_point_in_view = pixels.in_view(truth);
-    if (std::isnan(displacement)) {
-        if (error.true_point_in_view) error.px = kInfinity;
-        return error;
+RunErrors errors_of(const ReferenceTerrain& terrain, const PixelProjection& pixels,
+                    const Samples& samples, const float* displacements) {
+    const int count = samples.count;
+    const Run truth = points_of(terrain, pixels, samples);
+    const Run drawn = raised(truth, pixels.turned({0, 0, 1}), displacements, count);
+    const Flags true_in_view = in_view(pixels, truth, count);
+    const Flags drawn_in_view = in_view(pixels, drawn, count);  // never where not covered: NaN
+    RunErrors errors{unclipped_distances(pixels, truth, drawn, count)};
+    double nearest = pixels.near_plane();
+    for (std::size_t i = 0; i < std::size_t(count); ++i) {
+        const double px = std::isnan(drawn.z[i]) ? kInfinity : errors.px[i];
+        errors.px[i] = true_in_view[i] + drawn_in_view[i] > 0 ? px : -1.0;
+        nearest = std::min(nearest, std::min(truth.z[i], drawn.z[i]));
     }
-    const glm::dvec3 drawn = truth + up * double(displacement);
-    if (!error.true_point_in_view && !pixels.in_view(drawn)) return error;
-    const PixelProjection::Distance distance = pixels.distance(truth, drawn);
-    error.px = distance.px;
-    error.clipped = distance.clipped;
-    return error;
+    if (nearest == pixels.near_plane()) return errors;
+    for (std::size_t i = 0; i < std::size_t(count); ++i) {
+        if (errors.px[i] < 0 || std::isnan(drawn.z[i])) continue;
+        const PixelProjection::Distance distance = pixels.distance(truth.at(i), drawn.at(i));
+        errors.px[i] = distance.px;
+        errors.clipped[i] = distance.clipped;
+    }
+    return errors;
 }
 
 }  // namespace
@@ -114,33 +180,34 @@ SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& came
                              const std::optional<VisibleErrors>& visible) {
     struct Partial {
         SampleErrors errors;
-        ErrorSums all, visible;
+        ErrorBatch all, visible;
     };
     const PixelProjection pixels(camera);
-    const glm::dvec3 up = pixels.turned({0, 0, 1});
     const std::array fields{displacements};
-    const auto partials = for_samples<Partial>(
-        terrain, camera, fields,
-        [&](Partial& partial, int row, int column, std::size_t index, const glm::dvec3& truth) {
-            const float displacement = displacements[index];
-            const SampleError error = error_of(pixels, up, truth, displacement);
-            if (error.px < 0) return;
-            all.tally(error.px);
-            partial.all.add(error.px, bound);
-            if (error.clipped) ++partial.errors.clipped;
-            keep_worst({error.px, row, column}, partial.errors.worst);
-            if (!std::isnan(displacement)) {
-                ++partial.errors.heights.count;
-                partial.errors.heights.sum_of_squares += double(displacement) * displacement;
-            }
-            if (visible && visible->view.sees(index)) {
-                visible->pool.tally(error.px);
-                partial.visible.add(error.px, bound);
-                keep_worst({error.px, row, column}, partial.errors.worst_visible);
+    auto partials = for_samples<Partial>(
+        terrain, camera, fields, [&](Partial& partial, const Samples& samples) {
+            const RunErrors errors =
+                errors_of(terrain, pixels, samples, &displacements[samples.first]);
+            for (int i = 0; i < samples.count; ++i) {
+                const double px = errors.px[std::size_t(i)];
+                if (px < 0) continue;
+                const std::size_t index = samples.first + std::size_t(i);
+                const WorstSample sample{px, samples.row, samples.column + i};
+                all.tally(partial.all, px, bound);
+                if (errors.clipped[std::size_t(i)]) ++partial.errors.clipped;
+                keep_worst(sample, partial.errors.worst);
+                if (const float displacement = displacements[index]; !std::isnan(displacement)) {
+                    ++partial.errors.heights.count;
+                    partial.errors.heights.sum_of_squares += double(displacement) * displacement;
+                }
+                if (visible && visible->view.sees(index)) {
+                    visible->pool.tally(partial.visible, px, bound);
+                    keep_worst(sample, partial.errors.worst_visible);
+                }
             }
         });
     SampleErrors errors;
-    for (const Partial& partial : partials) {
+    for (Partial& partial : partials) {
         all.add(partial.all);
         if (visible) visible->pool.add(partial.visible);
         keep_worst(partial.errors.worst, errors.worst);
@@ -155,49 +222,54 @@ Popping measure_popping(const ReferenceTerrain& terrain, const DrawnFrame& earli
                         const DrawnFrame& later, ErrorPool& pool) {
     struct Partial {
         Popping popping;
-        ErrorSums sums;
+        ErrorBatch errors;
     };
     const PixelProjection pixels(later.camera);
     const PixelProjection pixels_before(earlier.camera);
     const glm::dvec3 up = pixels.turned({0, 0, 1});
-    /// Whether the true or the drawn point was in the earlier view.
-    const auto was_in_view = [&](int row, int column, float displacement) {
-        const glm::dvec3 truth = terrain.sample(row, column);
-        if (pixels_before.in_view(pixels_before.local(truth))) return true;
-        const glm::dvec3 drawn = truth + glm::dvec3(0, 0, double(displacement));
-        return !std::isnan(displacement) && pixels_before.in_view(pixels_before.local(drawn));
-    };
     const std::array fields{earlier.displacements, later.displacements};
-    const auto partials = for_samples<Partial>(
-        terrain, later.camera, fields,
-        [&](Partial& partial, int row, int column, std::size_t index, const glm::dvec3& truth) {
-            const float before = earlier.displacements[index];
-            const float after = later.displacements[index];
-            const glm::dvec3 drawn = truth + up * double(after);
-            const bool now_in_view =
-                pixels.in_view(truth) || (!std::isnan(after) && pixels.in_view(drawn));
-            if (!std::isnan(after) && now_in_view) {
-                ++partial.popping.heights.count;
-                partial.popping.heights.sum_of_squares += double(after) * after;
-            }
-            if (std::isnan(before) || std::isnan(after)) {
-                if (std::isnan(before) != std::isnan(after) && now_in_view &&
-                    was_in_view(row, column, before)) {
-                    ++partial.popping.covered_once;
+    auto partials = for_samples<Partial>(
+        terrain, later.camera, fields, [&](Partial& partial, const Samples& samples) {
+            const float* befores = &earlier.displacements[samples.first];
+            const float* afters = &later.displacements[samples.first];
+            const int count = samples.count;
+            const Run truth = points_of(terrain, pixels, samples);
+            const Run now = raised(truth, up, afters, count);
+            const Run before_now = raised(truth, up, befores, count);
+            const Flags truth_seen = in_view(pixels, truth, count);
+            const Flags now_seen = in_view(pixels, now, count);
+            const Flags before_now_seen = in_view(pixels, before_now, count);
+            // The true and the drawn points in the earlier view.
+            const Flags truth_was_seen =
+                in_view(pixels_before, points_of(terrain, pixels_before, samples), count);
+            const Flags drawn_was_seen =
+                in_view(pixels_before, points_of(terrain, pixels_before, samples, befores), count);
+            for (std::size_t i = 0; i < std::size_t(count); ++i) {
+                const bool in_view_now = truth_seen[i] + now_seen[i] > 0;
+                const bool was_in_view = truth_was_seen[i] + drawn_was_seen[i] > 0;
+                const float before = befores[i];
+                const float after = afters[i];
+                if (!std::isnan(after) && in_view_now) {
+                    ++partial.popping.heights.count;
+                    partial.popping.heights.sum_of_squares += double(after) * after;
                 }
-                return;
+                if (std::isnan(before) || std::isnan(after)) {
+                    if (std::isnan(before) != std::isnan(after) && in_view_now && was_in_view) {
+                        ++partial.popping.covered_once;
+                    }
+                    continue;
+                }
+                if (now_seen[i] + before_now_seen[i] == 0 || !was_in_view) continue;
+                // Most of the surface stays where it was.
+                const double px =
+                    before == after ? 0 : pixels.distance(before_now.at(i), now.at(i)).px;
+                pool.tally(partial.errors, px, 1.0);
             }
-            const glm::dvec3 drawn_before = truth + up * double(before);
-            if (!pixels.in_view(drawn) && !pixels.in_view(drawn_before)) return;
-            if (!was_in_view(row, column, before)) return;
-            const double px = pixels.distance(drawn_before, drawn).px;
-            pool.tally(px);
-            partial.sums.add(px, 1.0);
         });
     Popping popping;
-    for (const Partial& partial : partials) {
-        pool.add(partial.sums);
-        popping.over_1px += partial.sums.over_bound;
+    for (Partial& partial : partials) {
+        pool.add(partial.errors);
+        popping.over_1px += partial.errors.sums.over_bound;
         popping.covered_once += partial.popping.covered_once;
         popping.heights.add(partial.popping.heights);
     }
@@ -209,7 +281,8 @@ std::vector<float> map_of_errors(const ReferenceTerrain& terrain, const Camera& 
                                  int map_columns) {
     const TerrainInfo& info = terrain.info();
     const PixelProjection pixels(camera);
-    const glm::dvec3 up = pixels.turned({0, 0, 1});
+    const BoxInView in_view(camera, kSlack);
+    const std::array fields{displacements};
     std::vector<float> map(std::size_t(map_rows) * std::size_t(map_columns),
                            std::numeric_limits<float>::quiet_NaN());
     // Sample i of n lies in cell floor(i * cells / n).
@@ -219,17 +292,25 @@ std::vector<float> map_of_errors(const ReferenceTerrain& terrain, const Camera& 
     tbb::parallel_for(0, map_rows, [&](int map_row) {
         const int end = first_in(map_row + 1, map_rows, info.rows);
         for (int row = first_in(map_row, map_rows, info.rows); row < end; ++row) {
-            for (int column = 0; column < info.columns; ++column) {
-                const std::size_t index =
-                    std::size_t(row) * std::size_t(info.columns) + std::size_t(column);
-                const double px = error_of(pixels, up, pixels.local(terrain.sample(row, column)),
-                                           displacements[index])
-                                      .px;
-                if (px < 0) continue;
-                const auto map_column = std::int64_t(column) * map_columns / info.columns;
-                float& cell =
-                    map[std::size_t(map_row) * std::size_t(map_columns) + std::size_t(map_column)];
-                if (!(float(px) <= cell)) cell = float(px);  // also over NaN
+            for (int first = 0; first < info.columns; first += kBlock) {
+                const SampleRect rect{row, first, 1, std::min(kBlock, info.columns - first)};
+                if (!may_be_in_view(terrain, in_view, rect,
+                                    displacement_range(fields, rect, info.columns))) {
+                    continue;
+                }
+                const Samples samples{
+                    row, first, rect.columns,
+                    std::size_t(row) * std::size_t(info.columns) + std::size_t(first)};
+                const RunErrors errors =
+                    errors_of(terrain, pixels, samples, &displacements[samples.first]);
+                for (int i = 0; i < samples.count; ++i) {
+                    const auto px = float(errors.px[std::size_t(i)]);
+                    if (px < 0) continue;
+                    const auto map_column = std::int64_t(first + i) * map_columns / info.columns;
+                    float& cell = map[std::size_t(map_row) * std::size_t(map_columns) +
+                                      std::size_t(map_column)];
+                    if (!(px <= cell)) cell = px;  // also over NaN
+                }
             }
         }
     });

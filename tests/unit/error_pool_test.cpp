@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -20,12 +21,9 @@ constexpr double kNoBound = kInfinity;
 constexpr double kBucket = 1.0 / (1U << 16U);  // what the header promises, relative
 
 void put(ErrorPool& pool, const std::vector<double>& errors, double bound = kNoBound) {
-    ErrorSums sums;
-    for (const double error : errors) {
-        pool.tally(error);
-        sums.add(error, bound);
-    }
-    pool.add(sums);
+    ErrorBatch batch;
+    for (const double error : errors) pool.tally(batch, error, bound);
+    pool.add(batch);
 }
 
 /// Over many powers of two, zeros among them.
@@ -127,14 +125,19 @@ TEST(ErrorPool, threads_tally_without_losing_any) {
     put(alone, errors);
     ErrorPool together;
     {
+        std::array<ErrorBatch, 4> batches;
         std::vector<std::jthread> threads;
         for (std::size_t t = 0; t < 4; ++t) {
             threads.emplace_back([&, t] {
-                for (std::size_t i = t; i < errors.size(); i += 4) together.tally(errors[i]);
+                for (std::size_t i = t; i < errors.size(); i += 4) {
+                    together.tally(batches[t], errors[i], kNoBound);
+                }
             });
         }
+        threads.clear();
+        for (ErrorBatch& batch : batches) together.add(batch);
     }
-    together.add(alone.sums());
+    EXPECT_EQ(together.sums().count, alone.sums().count);
     for (const double p : {0.01, 0.3, 0.77, 0.999}) {
         EXPECT_EQ(together.percentile(p), alone.percentile(p));
     }
@@ -145,8 +148,9 @@ TEST(ErrorPool, extremes_have_a_place_and_mistakes_are_refused) {
     put(pool, {1e-12, 1e300});
     EXPECT_EQ(*pool.percentile(0.5), 0.0);
     EXPECT_GT(*pool.percentile(1.0), 1e11);
-    EXPECT_THROW(pool.tally(-1), ContractError);
-    EXPECT_THROW(pool.tally(std::nan("")), ContractError);
+    ErrorBatch batch;
+    EXPECT_THROW(pool.tally(batch, -1, kNoBound), ContractError);
+    EXPECT_THROW(pool.tally(batch, std::nan(""), kNoBound), ContractError);
     EXPECT_THROW((void)pool.percentile(0), ContractError);
     EXPECT_THROW((void)pool.percentile(1.5), ContractError);
 }
