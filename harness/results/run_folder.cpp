@@ -30,7 +30,8 @@ constexpr int kLockAttempts = 50;
 constexpr auto kLockPause = std::chrono::milliseconds(100);
 
 constexpr const char* kLock = ".lock";
-constexpr std::array kParts = {"scenarios", "frames", "flights", "logs", "shots"};
+constexpr const char* kViews = "views";
+constexpr std::array kParts = {"scenarios", "frames", "flights", "logs", "shots", kViews};
 /// What the commands that fly write beside the subfolders.
 constexpr std::array kDocuments = {"run.json", "match.json", "summary.md",
                                    "trade.md", "match.md",   "economy.md"};
@@ -183,6 +184,18 @@ std::vector<fs::path> RunFolder::own_files(bool temporary_only) const {
         });
     }
     return files;
+}
+
+fs::path RunFolder::views() const {
+    return path_ / kViews;
+}
+
+void RunFolder::drop_views() {
+    std::error_code ignored;
+    for (const fs::path& file : own_files(false)) {
+        if (file.parent_path() == views()) fs::remove(file, ignored);
+    }
+    fs::remove(views(), ignored);  // fails, as it should, where something else lies in it
 }
 
 void RunFolder::discard() {

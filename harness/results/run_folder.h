@@ -28,12 +28,17 @@ public:
     explicit RunFolder(std::filesystem::path path);
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// The folder of what cells keep for each other while the run lasts.
+    [[nodiscard]] std::filesystem::path views() const;
 
     /// The names that this run gives to files in its subfolders: NAME.* and NAME__*. They are the
     /// ids of cells and the names of scenarios.
     void claim(std::vector<std::string> names) { names_ = std::move(names); }
     /// Makes the subfolders. Throws InputError where a link or a file stands in the place of one.
     void make_parts();
+
+    /// Removes what lies in `views()`, once the last cell was flown.
+    void drop_views();
 
     /// Removes what a run that was refused before its first cell has made. Call it only where the
     /// run began in this object: the folder was new or empty.

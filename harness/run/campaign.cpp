@@ -133,6 +133,7 @@ public:
                 }
             });
             write_summary();
+            folder_.drop_views();
         } catch (const EnvironmentError& error) {
             if (nothing_is_kept()) throw;
             outcome_.error = error.what();
@@ -321,6 +322,7 @@ private:
         const std::size_t which = scenario_index(cell.scenario);
         const scenario::Scenario& scenario = plan_.scenarios[which];
         cell.spec.out = folder_.path();
+        cell.spec.views = request_.views.empty() ? folder_.views() : request_.views;
         cell.spec.scenario_file = scenario_file(cell.scenario);
         cell.spec.scenario_origin = plan_.origins[which];
         const CellLimits limits{scenario.cell_time_limit_s, scenario.frame_time_limit_s,

@@ -26,7 +26,8 @@ struct CellSpec {
     int repetition = 0;
     std::uint64_t seed = 1;
     std::string device;         ///< as for platform::Context
-    std::filesystem::path out;  ///< results folder
+    std::filesystem::path out;    ///< results folder
+    std::filesystem::path views;  ///< folder of the ViewCache; "": there is none
 };
 
 /// What the child process is given. Throws InputError (reading) for what is damaged.

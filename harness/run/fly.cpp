@@ -316,7 +316,9 @@ void Flight::fly_in_lockstep() {
         measures_truth() ? terrain::whole_field(terrain_) : nullptr;
     signs_.enter(Call::none);
     measurer_ = std::make_unique<FrameMeasurer>(
-        *stage_, measures_truth() ? result_.claimed_px : std::nullopt, truth);
+        *stage_, measures_truth() ? result_.claimed_px : std::nullopt, truth,
+        ViewCache(spec_.views, scenario_.name, result_.terrain_checksum,
+                  result_.gl_vendor + "\n" + result_.gl_renderer + "\n" + result_.gl_version));
     warm_up();  // as the timing replay began
     std::map<std::string, double> sums;
     base::Fnv1a shots_hash;

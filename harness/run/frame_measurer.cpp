@@ -13,8 +13,8 @@
 namespace lodbench::run {
 
 FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed,
-                             std::shared_ptr<const terrain::HeightField> truth)
-    : stage_(&stage), truth_(std::move(truth)) {
+                             std::shared_ptr<const terrain::HeightField> truth, ViewCache views)
+    : stage_(&stage), truth_(std::move(truth)), views_(std::move(views)) {
     if (truth_) meter_.emplace(truth_->samples(), truth_->info(), claimed);
 }
 
@@ -39,6 +39,7 @@ void FrameMeasurer::take(int frame, const results::FrameRecord& record,
             stage_->plugin_name(), record.triangles.value_or(0), surface.triangle_count()));
     }
     nondegenerate_ = measure::nondegenerate_count(surface);
+    frame_ = frame;
     if (!meter_) return;
     meter_->take(frame, stage_->camera(), std::move(surface),
                  before == nullptr ? nullptr : &before->truth);
@@ -55,10 +56,14 @@ void FrameMeasurer::measure(results::FrameRecord& record) {
 
 measure::ReferenceView FrameMeasurer::reference_view() {
     const Camera& camera = stage_->camera();
+    if (auto kept = views_.find(frame_, camera)) return std::move(*kept);
     const measure::HiddenGround hidden(meter_->terrain(), camera);
     stage_->draw_reference_picture(truth_, &hidden);
-    return {measure::seen_samples(meter_->terrain(), camera, hidden),
-            measure::reference_hits(meter_->terrain(), camera), stage_->read_color()};
+    measure::ReferenceView view{measure::seen_samples(meter_->terrain(), camera, hidden),
+                                measure::reference_hits(meter_->terrain(), camera),
+                                stage_->read_color()};
+    views_.keep(frame_, camera, view);
+    return view;
 }
 
 void FrameMeasurer::find_economy() {
@@ -69,8 +74,10 @@ void FrameMeasurer::measure_realtime(int frame) {
     if (!meter_) return;
     measure::CapturedSurface surface = capture();
     stage_->draw_picture();
-    meter_->measure_realtime(frame, stage_->camera(), std::move(surface),
-                             measure::reference_hits(meter_->terrain(), stage_->camera()),
+    const Camera& camera = stage_->camera();
+    const auto kept = views_.find(frame, camera);
+    meter_->measure_realtime(frame, camera, std::move(surface),
+                             kept ? kept->hits : measure::reference_hits(meter_->terrain(), camera),
                              stage_->read_depth());
 }
 

@@ -10,6 +10,7 @@
 #include "measure/truth.h"
 #include "run/cell.h"
 #include "run/stage.h"
+#include "run/view_cache.h"
 
 namespace lodbench::run {
 
@@ -19,7 +20,7 @@ public:
     /// `claimed`: the method's bound in pixels. `truth`: the whole terrain that the stage's is, to
     /// measure against; without it triangles are counted only.
     FrameMeasurer(Stage& stage, std::optional<double> claimed,
-                  std::shared_ptr<const terrain::HeightField> truth);
+                  std::shared_ptr<const terrain::HeightField> truth, ViewCache views = {});
 
     /// Goes on with another stage of the same method over the same terrain.
     void move_to(Stage& stage) { stage_ = &stage; }
@@ -47,8 +48,10 @@ private:
     Stage* stage_;
     std::shared_ptr<const terrain::HeightField> truth_;  ///< outlives the stage
     std::optional<measure::TruthMeter> meter_;
-    [[nodiscard]] measure::ReferenceView reference_view();
+    [[nodiscard]] measure::ReferenceView reference_view();  ///< of the frame that was taken last
 
+    ViewCache views_;
+    int frame_ = 0;                    ///< that was taken last
     std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
 };
 

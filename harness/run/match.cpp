@@ -152,6 +152,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
 
     const bool fresh = !fs::exists(request.out / "match.json");
     std::optional<results::RunFolder> folder = begin_search(request, target);
+    folder->make_parts();  // the probes keep their views of the terrain for each other
 
     const auto settings_of = [&request](const std::string& method) {
         std::vector<std::string> settings;
@@ -171,6 +172,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             probe.settings = settings_of(method.method);
             probe.settings.push_back(fmt::format("{}.{}={}", method.method, method.knob->name,
                                                  method.knob->text(value)));
+            probe.views = folder->views();
             probe.out = request.out / "search" / fmt::format("{}-{:02}", method.method, number++);
             probe.overrides.repetitions = 1;
             probe.overrides.truth = of_the_truth;

@@ -20,6 +20,7 @@ struct RunRequest {
     std::vector<std::string> methods;              ///< ids; empty: as the scenario says
     std::vector<std::string> settings;             ///< "METHOD.PARAMETER=VALUE[,VALUE...]"
     std::filesystem::path out;
+    std::filesystem::path views;  ///< where views of the terrain are kept between campaigns; "": not
     std::vector<std::filesystem::path> plugin_dirs;
     scenario::Overrides overrides;
     std::string device;

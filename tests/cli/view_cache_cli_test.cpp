@@ -1,0 +1,66 @@
+// Cells that share the reference's views measure what each of them measures alone.
+
+#include <gtest/gtest.h>
+
+#include "cli/run_lodbench.h"
+
+namespace lodbench::test {
+namespace {
+
+/// A ridged terrain flown low: most of it lies behind hills.
+fs::path hills(const fs::path& folder) {
+    const fs::path file = folder / "hills.toml";
+    std::ofstream(file) << R"(name = "hills"
+[terrain]
+synthetic = "ridged"
+rows = 257
+columns = 257
+spacing = 30
+[viewport]
+width = 160
+height = 120
+[flight]
+kind = "line"
+frames = 5
+warmup_frames = 0
+start = [1000, 3000, 900]
+end = [2000, 3100, 900]
+[measure]
+every = 1
+[run]
+repetitions = 1
+)";
+    return file;
+}
+
+int compare(const fs::path& before, const fs::path& after) {
+    const std::string command = "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/compare_truth.py " +
+                                before.string() + " " + after.string() + " > " +
+                                (after / "compared.txt").string();
+    return std::system(command.c_str());
+}
+
+TEST(Views, kept_for_the_next_method_change_no_figure_and_are_gone_at_the_end) {
+    const ScratchFolder folder;
+    const fs::path scenario = hills(folder.path());
+    const fs::path together = folder.path() / "together";
+    const std::vector<std::string> methods = {"lindstrom", "static-patches", "multi-context"};
+    const auto flown = [&](const std::vector<std::string>& names, const fs::path& out) {
+        std::vector<std::string> arguments = {"run", scenario.string(), "--out", out.string()};
+        for (const std::string& name : names) arguments.insert(arguments.end(), {"--method", name});
+        return run_lodbench(arguments, folder.path());
+    };
+    const Finished all = flown(methods, together);
+    ASSERT_EQ(all.status, 0) << all.output;
+    EXPECT_FALSE(fs::exists(together / "views"));
+    for (const std::string& method : methods) {
+        const fs::path alone = folder.path() / method;
+        const Finished one = flown({method}, alone);
+        ASSERT_EQ(one.status, 0) << one.output;
+        EXPECT_EQ(compare(together, alone), 0) << text_of(alone / "compared.txt");
+        EXPECT_NE(text_of(alone / "compared.txt").find(" 0 not"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace lodbench::test
