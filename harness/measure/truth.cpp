@@ -55,8 +55,13 @@ void keep_worst(const WorstSample& candidate, int frame, double& px,
 }  // namespace
 
 TruthMeter::TruthMeter(std::span<const float> heights, const TerrainInfo& info,
-                       std::optional<double> claimed)
-    : terrain_(heights, info), claimed_(claimed), bound_(claimed.value_or(kInfinity)) {}
+                       std::optional<double> claimed, Extent extent)
+    : terrain_(heights, info),
+      claimed_(claimed),
+      extent_(extent),
+      bound_(claimed.value_or(kInfinity)) {
+    total_.extent = extent;
+}
 
 void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface,
                       FrameTruth* before) {
@@ -65,9 +70,10 @@ void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface
     now_.camera = camera;
     now_.measured = false;
     now_.height_rmse.reset();
-    now_.displacements.resize(terrain_.heights().size());
     surface_.reset();  // the old one's memory first
     surface_.emplace(std::move(surface), terrain_.info());
+    if (extent_ == Extent::pixels) return;
+    now_.displacements.resize(terrain_.heights().size());
     surface_->displacements(terrain_.heights(), now_.displacements);
     if (!before_.measured || before_.frame + 1 != frame) return;
 
@@ -92,52 +98,27 @@ void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface
 FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::uint8_t> drawn_rgb,
                                const ReferenceView& view) {
     if (!surface_) throw ContractError("TruthMeter::measure: no frame was taken");
-    frame_screen_.clear();
-    frame_visible_.clear();
+    FrameTruth truth;
     frame_pixel_.clear();
-    const SampleErrors samples =
-        measure_samples(terrain_, now_.camera, now_.displacements, bound_, frame_screen_,
-                        VisibleErrors{view, frame_visible_});
     PixelErrors pixels =
         measure_pixels(terrain_, *surface_, now_.camera, view.hits, depth, bound_, frame_pixel_);
-    const Viewport& size = now_.camera.viewport;
-    const ImageDifference image = image_difference({drawn_rgb, size.width, size.height},
-                                                   {view.picture, size.width, size.height});
-
-    FrameTruth truth;
-    const ErrorSummary screen = frame_screen_.summary(false);
-    const ErrorSummary visible = frame_visible_.summary(false);
     const ErrorSummary pixel = frame_pixel_.summary(false);
-    truth.screen_max_px = screen.max;
-    truth.screen_p999_px = screen.p999;
-    truth.screen_rms_px = screen.rms;
-    truth.visible_max_px = visible.max;
-    truth.visible_p999_px = visible.p999;
     truth.pixel_max_px = pixel.max;
     truth.pixel_p999_px = pixel.p999;
     truth.pixel_rms_px = pixel.rms;
-    truth.uncovered_samples = screen.uncovered;
     truth.crack_pixels = pixels.crack_pixels;
     truth.skirt_pixels = pixels.skirt_pixels;
     truth.silhouette_pixels = pixels.silhouette_pixels;
     truth.silhouette_max_px = pixels.silhouette_max;
-    truth.height_rmse_m = rmse(samples.heights);
-    truth.psnr_db = psnr_db(image.mean_squared_error);
-    truth.ssim = image.ssim;
-
-    screen_.add(frame_screen_);
-    visible_.add(frame_visible_);
     pixel_.add(frame_pixel_);
-    const int frame = now_.frame;
-    keep_worst(samples.worst, frame, screen_worst_px_, total_.screen_worst);
-    keep_worst(samples.worst_visible, frame, visible_worst_px_, total_.visible_worst);
-    keep_worst(worst_pixel(pixels, size.width), frame, pixel_worst_px_, total_.pixel_worst);
+    keep_worst(worst_pixel(pixels, now_.camera.viewport.width), now_.frame, pixel_worst_px_,
+               total_.pixel_worst);
     ++total_.frames;
     total_.crack_total += pixels.crack_pixels;
     total_.crack_max = std::max(total_.crack_max, pixels.crack_pixels);
     total_.skirt_total += pixels.skirt_pixels;
     total_.skirt_max = std::max(total_.skirt_max, pixels.skirt_pixels);
-    total_.clipped += samples.clipped + pixels.clipped;
+    total_.clipped += pixels.clipped;
     total_.unjudged += pixels.unjudged_pixels;
     total_.undecided += pixels.undecided_pixels;
     total_.pixels += depth.size();
@@ -145,13 +126,48 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
     total_.silhouette_max = std::max(total_.silhouette_max, pixels.silhouette_max);
     total_.silhouette_pixels += pixels.silhouette_pixels;
     silhouette_sum_ += pixels.silhouette_mean;
-    if (truth.height_rmse_m) rmse_.push_back(*truth.height_rmse_m);
-    squared_errors_.push_back(image.mean_squared_error);
-    if (image.ssim) ssim_.push_back(*image.ssim);
+    if (extent_ == Extent::all) {
+        measure_samples_into(truth, view);
+        measure_picture_into(truth, drawn_rgb, view.picture);
+    }
     now_.measured = true;
     now_.height_rmse = truth.height_rmse_m;
     keep_if_worst(truth, pixel, std::move(pixels), std::move(drawn_rgb), view.picture);
     return truth;
+}
+
+void TruthMeter::measure_samples_into(FrameTruth& truth, const ReferenceView& view) {
+    frame_screen_.clear();
+    frame_visible_.clear();
+    const SampleErrors samples =
+        measure_samples(terrain_, now_.camera, now_.displacements, bound_, frame_screen_,
+                        VisibleErrors{view, frame_visible_});
+    const ErrorSummary screen = frame_screen_.summary(false);
+    const ErrorSummary visible = frame_visible_.summary(false);
+    truth.screen_max_px = screen.max;
+    truth.screen_p999_px = screen.p999;
+    truth.screen_rms_px = screen.rms;
+    truth.visible_max_px = visible.max;
+    truth.visible_p999_px = visible.p999;
+    truth.uncovered_samples = screen.uncovered;
+    truth.height_rmse_m = rmse(samples.heights);
+    screen_.add(frame_screen_);
+    visible_.add(frame_visible_);
+    keep_worst(samples.worst, now_.frame, screen_worst_px_, total_.screen_worst);
+    keep_worst(samples.worst_visible, now_.frame, visible_worst_px_, total_.visible_worst);
+    total_.clipped += samples.clipped;
+    if (truth.height_rmse_m) rmse_.push_back(*truth.height_rmse_m);
+}
+
+void TruthMeter::measure_picture_into(FrameTruth& truth, std::span<const std::uint8_t> drawn_rgb,
+                                      std::span<const std::uint8_t> reference_rgb) {
+    const Viewport& size = now_.camera.viewport;
+    const ImageDifference image = image_difference({drawn_rgb, size.width, size.height},
+                                                   {reference_rgb, size.width, size.height});
+    truth.psnr_db = psnr_db(image.mean_squared_error);
+    truth.ssim = image.ssim;
+    squared_errors_.push_back(image.mean_squared_error);
+    if (image.ssim) ssim_.push_back(*image.ssim);
 }
 
 void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixel,
@@ -174,6 +190,11 @@ void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixe
     const double cells = std::min(1.0, kLongestMapSide / double(std::max(info.rows, info.columns)));
     worst_->map_rows = std::max(1, int(info.rows * cells));
     worst_->map_columns = std::max(1, int(info.columns * cells));
+    if (extent_ == Extent::pixels) {
+        worst_->map_px.assign(std::size_t(worst_->map_rows) * std::size_t(worst_->map_columns),
+                              std::numeric_limits<float>::quiet_NaN());
+        return;
+    }
     worst_->map_px = map_of_errors(terrain_, now_.camera, now_.displacements, worst_->map_rows,
                                    worst_->map_columns);
 }
@@ -192,7 +213,9 @@ Fewest TruthMeter::find_fewest(double target_px, ErrorBound bound) const {
 }
 
 void TruthMeter::find_economy(std::uint64_t triangles) {
-    if (!now_.measured) throw ContractError("TruthMeter::find_economy: no frame was measured");
+    if (!now_.measured || extent_ != Extent::all) {
+        throw ContractError("TruthMeter::find_economy: no frame's samples were measured");
+    }
     const ErrorSummary errors = frame_screen_.summary(false);
     if (!errors.max_covered) return;
     Economy& economy = total_.economy.emplace_back();

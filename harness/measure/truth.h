@@ -20,6 +20,13 @@
 
 namespace lodbench::measure {
 
+/// What is measured of a frame.
+enum class Extent {
+    all,
+    pixels,  ///< pixel error, cracks, skirts and silhouette: nothing of samples, popping and
+             ///< pictures
+};
+
 /// A measured frame's row. Pixels and metres; +infinity where uncovered places reach into the
 /// figure.
 struct FrameTruth {
@@ -39,7 +46,7 @@ struct WorstFrame {
     std::vector<std::uint8_t> drawn_rgb, reference_rgb;  ///< row 0 at the top
     PixelErrors pixels;
     int map_rows = 0, map_columns = 0;
-    std::vector<float> map_px;  ///< as map_of_errors
+    std::vector<float> map_px;  ///< as map_of_errors; all NaN where only pixels are measured
     FrameTruth truth;
     std::optional<double> pixel_max_covered;  ///< greatest finite pixel error
 };
@@ -72,6 +79,7 @@ struct Economy {
 /// Over all measured frames. Counts are totals unless they say otherwise.
 struct TruthSummary {
     int frames = 0;
+    Extent extent = Extent::all;
     ErrorSummary screen, visible, pixel;
     std::optional<WorstPlace> screen_worst, visible_worst, pixel_worst;
     std::uint64_t crack_total = 0, crack_max = 0, skirt_total = 0, skirt_max = 0;
@@ -101,7 +109,7 @@ public:
     /// `heights` as for ReferenceTerrain; `claimed`: the method's bound in pixels, where it has
     /// one.
     TruthMeter(std::span<const float> heights, const TerrainInfo& info,
-               std::optional<double> claimed);
+               std::optional<double> claimed, Extent extent = Extent::all);
 
     /// What the method drew at `frame`. Where the frame before was measured, what popped between
     /// the two goes into `before`.
@@ -136,12 +144,16 @@ private:
         bool measured = false;
         std::optional<double> height_rmse;
     };
+    void measure_samples_into(FrameTruth& truth, const ReferenceView& view);
+    void measure_picture_into(FrameTruth& truth, std::span<const std::uint8_t> drawn_rgb,
+                              std::span<const std::uint8_t> reference_rgb);
     void keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixel, PixelErrors&& pixels,
                        std::vector<std::uint8_t>&& drawn_rgb,
                        const std::vector<std::uint8_t>& reference_rgb);
 
     ReferenceTerrain terrain_;
     std::optional<double> claimed_;
+    Extent extent_;
     double bound_;
     Taken now_, before_;
     std::optional<DrawnSurface> surface_;  ///< of now_

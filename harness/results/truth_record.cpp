@@ -79,7 +79,8 @@ Json::Value truth_record(const measure::TruthSummary& truth) {
                                ? total_and_max(truth.crack_total, truth.crack_max)
                                : Json::Value::null;
     json["skirt_pixels"] = total_and_max(truth.skirt_total, truth.skirt_max);
-    json["uncovered_samples"] = count(truth.screen.uncovered);
+    json["uncovered_samples"] =
+        truth.extent == measure::Extent::all ? count(truth.screen.uncovered) : Json::Value::null;
     if (!truth.economy.empty()) json["economy"] = Json::arrayValue;
     for (const measure::Economy& frame : truth.economy) {
         Json::Value figures;

@@ -16,6 +16,7 @@ std::string write_spec(const CellSpec& spec) {
     Json::Value& overrides = json["overrides"] = Json::objectValue;
     if (spec.overrides.frames) overrides["frames"] = *spec.overrides.frames;
     if (spec.overrides.truth) overrides["truth"] = *spec.overrides.truth;
+    if (spec.overrides.pixels_only) overrides["pixels_only"] = *spec.overrides.pixels_only;
     if (spec.overrides.economy) {
         Json::Value& frames = overrides["economy"] = Json::arrayValue;
         for (const int frame : *spec.overrides.economy) frames.append(frame);
@@ -53,6 +54,9 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         const Json::Value& overrides = json["overrides"];
         if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
         if (overrides.isMember("truth")) spec.overrides.truth = overrides["truth"].asBool();
+        if (overrides.isMember("pixels_only")) {
+            spec.overrides.pixels_only = overrides["pixels_only"].asBool();
+        }
         if (overrides.isMember("economy")) {
             auto& frames = spec.overrides.economy.emplace();
             for (const Json::Value& frame : overrides["economy"]) frames.push_back(frame.asInt());

@@ -318,7 +318,8 @@ void Flight::fly_in_lockstep() {
     measurer_ = std::make_unique<FrameMeasurer>(
         *stage_, measures_truth() ? result_.claimed_px : std::nullopt, truth,
         ViewCache(spec_.views, scenario_.name, result_.terrain_checksum,
-                  result_.gl_vendor + "\n" + result_.gl_renderer + "\n" + result_.gl_version));
+                  result_.gl_vendor + "\n" + result_.gl_renderer + "\n" + result_.gl_version),
+        scenario_.measure.pixels_only ? measure::Extent::pixels : measure::Extent::all);
     warm_up();  // as the timing replay began
     std::map<std::string, double> sums;
     base::Fnv1a shots_hash;
@@ -375,7 +376,8 @@ void Flight::measure_frame(int frame) {
     const bool economy = measures_truth() && std::ranges::find(scenario_.measure.economy, frame) !=
                                                  scenario_.measure.economy.end();
     const bool measured = frame % every == 0 || economy;
-    const bool successor = measures_truth() && frame > 0 && (frame - 1) % every == 0;
+    const bool successor =
+        measures_truth() && !scenario_.measure.pixels_only && frame > 0 && (frame - 1) % every == 0;
     if (!measured && !successor) return;
     results::FrameRecord* const before =
         successor ? &result_.frames[std::size_t(frame - 1)] : nullptr;

@@ -13,9 +13,10 @@
 namespace lodbench::run {
 
 FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed,
-                             std::shared_ptr<const terrain::HeightField> truth, ViewCache views)
+                             std::shared_ptr<const terrain::HeightField> truth, ViewCache views,
+                             measure::Extent extent)
     : stage_(&stage), truth_(std::move(truth)), views_(std::move(views)) {
-    if (truth_) meter_.emplace(truth_->samples(), truth_->info(), claimed);
+    if (truth_) meter_.emplace(truth_->samples(), truth_->info(), claimed, extent);
 }
 
 measure::CapturedSurface FrameMeasurer::capture() {

@@ -20,7 +20,8 @@ public:
     /// `claimed`: the method's bound in pixels. `truth`: the whole terrain that the stage's is, to
     /// measure against; without it triangles are counted only.
     FrameMeasurer(Stage& stage, std::optional<double> claimed,
-                  std::shared_ptr<const terrain::HeightField> truth, ViewCache views = {});
+                  std::shared_ptr<const terrain::HeightField> truth, ViewCache views = {},
+                  measure::Extent extent = measure::Extent::all);
 
     /// Goes on with another stage of the same method over the same terrain.
     void move_to(Stage& stage) { stage_ = &stage; }

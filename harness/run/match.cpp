@@ -177,6 +177,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             probe.overrides.repetitions = 1;
             probe.overrides.truth = of_the_truth;
             probe.overrides.economy.emplace();  // none
+            probe.overrides.pixels_only = true;  // the error that is to be equal is theirs
             const CampaignOutcome flown = [&] {
                 try {
                     return run_campaign(probe, program, quiet);

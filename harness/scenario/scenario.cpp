@@ -167,6 +167,7 @@ void read_measure_and_run(Section& top, Scenario& scenario) {
     if (auto measure = top.section("measure")) {
         set(scenario.measure.every, measure->integer("every", 1, kMaxFrames));
         set(scenario.measure.truth, measure->boolean("truth"));
+        set(scenario.measure.pixels_only, measure->boolean("pixels_only"));
         const auto frames = [&](const char* key, std::vector<int>& list) {
             auto given = measure->integers(key, 0, scenario.frames - 1);
             if (!given) return;
@@ -176,6 +177,11 @@ void read_measure_and_run(Section& top, Scenario& scenario) {
         };
         frames("shots", scenario.measure.shots);
         frames("economy", scenario.measure.economy);
+        if (scenario.measure.pixels_only && !scenario.measure.economy.empty()) {
+            measure->refuse("economy",
+                            "it needs the errors of samples, which pixels_only leaves "
+                            "out; write one of the two");
+        }
         set(scenario.measure.budget_ms, measure->number("budget_ms", {0, 1e6}));
         measure->refuse_unknown();
     }
@@ -322,6 +328,7 @@ void apply(const Overrides& overrides, Scenario& scenario) {
     }
     if (overrides.seed) scenario.seed = *overrides.seed;
     if (overrides.truth) scenario.measure.truth = *overrides.truth;
+    if (overrides.pixels_only) scenario.measure.pixels_only = *overrides.pixels_only;
     if (overrides.economy) {
         for (const int frame : *overrides.economy) {
             if (frame >= 0 && frame < scenario.frames) continue;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "api/error.h"
 #include "measure/pixel_projection.h"
 #include "reference_oracle.h"
 #include "support/reference_view.h"
@@ -224,6 +225,32 @@ TEST(TruthMeter, the_worst_pixel_is_named_by_its_row_and_column) {
     EXPECT_EQ(*both.pixel.max, *measured.pixel.max);
     EXPECT_LT(*both.pixel_realtime->max, 0.01);
     EXPECT_EQ(both.pixel_realtime_worst->frame, 6);
+}
+
+TEST(TruthMeter, pixels_alone_have_the_figures_that_they_have_among_all) {
+    const Ground ground = flat_ground();
+    TruthMeter all(ground.heights, ground.info, 4.0);
+    TruthMeter pixels(ground.heights, ground.info, 4.0, Extent::pixels);
+    for (TruthMeter* meter : {&all, &pixels}) {
+        FrameTruth first = show(*meter, 0, 1);
+        (void)show(*meter, 1, 2, &first);
+        EXPECT_EQ(first.popping_max_px.has_value(), meter == &all);
+        EXPECT_EQ(first.screen_max_px.has_value(), meter == &all);
+        EXPECT_EQ(first.uncovered_samples.has_value(), meter == &all);
+        EXPECT_EQ(first.psnr_db.has_value(), meter == &all);
+    }
+    const TruthSummary whole = all.summary();
+    const TruthSummary part = pixels.summary();
+    EXPECT_GT(*whole.pixel.max, 0.5);
+    EXPECT_EQ(*part.pixel.max, *whole.pixel.max);
+    EXPECT_EQ(*part.pixel.rms, *whole.pixel.rms);
+    EXPECT_EQ(part.pixel.count, whole.pixel.count);
+    EXPECT_EQ(part.silhouette_max, whole.silhouette_max);
+    EXPECT_EQ(part.screen.count, 0U);
+    EXPECT_FALSE(part.popping);
+    EXPECT_FALSE(part.bound_honesty);
+    EXPECT_TRUE(std::isnan(pixels.worst_frame()->map_px[0]));
+    EXPECT_THROW(pixels.find_economy(1), ContractError);
 }
 
 }  // namespace
