@@ -24,6 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Quick ones first: most mutants die before the last two, which draw whole frames. Found by name alone: a file of
 # tests that covers more of harness/measure is added here.
 TESTS = ["error_pool_test", "image_difference_test", "capture_clip_test", "sample_errors_test", "truth_test",
+         "hidden_ground_test",
          "reference_sight_test", "reference_terrain_test", "drawn_surface_test", "drawn_surface_rays_test",
          "drawn_surface_skirts_test", "fault_table_test", "fault_table_cover_test", "greedy_triangulation_test",
          "needed_tiles_test", "cliff_test"]
@@ -62,9 +63,8 @@ MUTANTS = [
     Mutant("world_coordinates_in_float", "pixel_projection.h",
            "return turned(world - eye_);", "return turned(glm::dvec3(glm::vec3(world) - glm::vec3(eye_)));"),
     Mutant("frustum_test_dropped", "pixel_projection.h",
-           "point.z >= near_ && std::abs(point.x) <= tangents_.x * point.z &&\n"
-           "               std::abs(point.y) <= tangents_.y * point.z",
-           "point.z >= near_"),
+           "(point.z >= near_) & (std::abs(point.x) <= tangents_.x * point.z) &\n"
+           "               (std::abs(point.y) <= tangents_.y * point.z)", "point.z >= near_"),
     Mutant("near_clip_dropped", "pixel_projection.h",
            "if (a.z < near_ || b.z < near_) {", "if (false) {"),
     Mutant("near_clip_at_the_wrong_share", "pixel_projection.h",
@@ -72,32 +72,40 @@ MUTANTS = [
 
     # --- Errors at the samples.
     Mutant("displaced_downward", "sample_errors.cpp",
-           "truth + up * double(displacement)", "truth - up * double(displacement)"),
+           "run.z[i] + up.z * displacement", "run.z[i] - up.z * displacement"),
     Mutant("uncovered_sample_is_no_error", "sample_errors.cpp",
-           "if (error.true_point_in_view) error.px = kInfinity;", "if (error.true_point_in_view) error.px = 0;"),
+           "std::isnan(drawn.z[i]) ? kInfinity : errors.px[i]", "std::isnan(drawn.z[i]) ? 0 : errors.px[i]"),
     Mutant("drawn_point_in_view_does_not_count", "sample_errors.cpp",
-           "if (!error.true_point_in_view && !pixels.in_view(drawn)) return error;",
-           "if (!error.true_point_in_view) return error;"),
+           "true_in_view[i] + drawn_in_view[i] > 0 ? px", "true_in_view[i] > 0 ? px"),
     Mutant("blocks_are_culled_by_their_nearest_corner", "box_in_view.h",
            "+ glm::dot(glm::abs(normal), half) +", "- glm::dot(glm::abs(normal), half) +"),
     Mutant("blocks_are_culled_without_what_was_drawn", "sample_errors.cpp",
            "heights.low + displacement.low},", "heights.low},"),
-    Mutant("hidden_samples_count_as_visible", "sample_errors.cpp",
-           "if (error.true_point_in_view &&\n"
-           "                terrain.sees(camera.position, camera.near_plane / truth.z, row, column)) {",
-           "if (error.true_point_in_view) {"),
+    # --- What is called hidden without a look.
+    Mutant("horizon_of_the_highest_edges", "hidden_ground.cpp",
+           "double least = std::min(edge_[i], edge_[i + 1]);", "double least = std::max(edge_[i], edge_[i + 1]);"),
+    Mutant("nothing_is_hidden", "hidden_ground.cpp",
+           "            hide_samples(line, distance);\n", ""),
+    Mutant("horizon_before_the_near_plane", "hidden_ground.cpp",
+           "&& distance >= q_.nearest", "&& distance > 0"),
+    Mutant("highest_of_a_block_not_asked", "hidden_ground.cpp",
+           "kBlockCells + 1, kBlockCells + 1}).high", "kBlockCells + 1, kBlockCells + 1}).low"),
+    Mutant("hidden_samples_count_as_visible", "reference_view.cpp",
+           "if (!pixels.in_view(local) ||\n"
+           "                        !terrain.sees(camera.position, camera.near_plane / local.z, row, i)) {",
+           "if (!pixels.in_view(local)) {"),
     Mutant("popping_counts_what_is_out_of_view", "sample_errors.cpp",
-           "if (!pixels.in_view(drawn) && !pixels.in_view(drawn_before)) return;", ""),
+           "if (now_seen[i] + before_now_seen[i] == 0 || !was_in_view) continue;", "if (!was_in_view) continue;"),
     Mutant("covered_once_is_not_counted", "sample_errors.cpp",
-           "if (std::isnan(before) != std::isnan(after) && now_in_view &&",
-           "if (std::isnan(before) && std::isnan(after) && now_in_view &&"),
+           "std::isnan(before) != std::isnan(after) && in_view_now",
+           "std::isnan(before) && std::isnan(after) && in_view_now"),
     Mutant("popping_counts_what_enters_the_view", "sample_errors.cpp",
-           "if (!was_in_view(row, column, before)) return;", ""),
+           "if (now_seen[i] + before_now_seen[i] == 0 || !was_in_view) continue;",
+           "if (now_seen[i] + before_now_seen[i] == 0) continue;"),
     Mutant("covered_once_counts_what_enters_the_view", "sample_errors.cpp",
-           "was_in_view(row, column, before)) {", "true) {"),
+           "in_view_now && was_in_view) {", "in_view_now) {"),
     Mutant("map_keeps_the_least_error", "sample_errors.cpp",
-           "if (!(float(px) <= cell)) cell = float(px);", "if (!(float(px) >= cell)) cell = float(px);"),
-
+           "if (!(px <= cell)) cell = px;", "if (!(px >= cell)) cell = px;"),
     # --- Errors at the pixels.
     Mutant("pixel_corner_for_its_centre", "pixel_errors.cpp",
            "pixels_.direction(double(x) + 0.5 + shift.x, double(y) + 0.5 + shift.y)",

@@ -111,8 +111,7 @@ void keep_worst(const WorstSample& candidate, WorstSample& worst) {
     if (candidate.px > worst.px) worst = candidate;
 }
 
-/// 1 where a point of the run lies in the frustum, else 0; `displaced` metres upward, never where
-/// NaN.
+/// 1 where a point of the run lies in the frustum, else 0; 0 where it is NaN.
 using Flags = std::array<double, kBlock>;
 Flags in_view(const PixelProjection& pixels, const Run& run, int count) {
     Flags flags;
@@ -122,6 +121,7 @@ Flags in_view(const PixelProjection& pixels, const Run& run, int count) {
     return flags;
 }
 
+/// NaN where a displacement is.
 Run raised(const Run& run, const glm::dvec3& up, const float* displacements, int count) {
     Run result;
     for (std::size_t i = 0; i < std::size_t(count); ++i) {
