@@ -1,0 +1,233 @@
+#include "report/equal_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "measure/statistics.h"
+#include "report/aligned_table.h"
+#include "results/cell_groups.h"
+#include "results/error_metric.h"
+#include "results/json.h"
+
+namespace lodbench::report {
+namespace {
+
+constexpr double kTie = 0.05;       // ratio of frame times: one flight says no more
+constexpr double kExactPx = 0.02;   // below it what is drawn is the terrain: rounding of float32
+constexpr double kKept = 1 + 1e-3;  // of a claimed bound: float32 positions and depths
+
+struct Row {
+    std::string method, label;
+    std::optional<std::string> knob;  ///< "tau = 1.5"; nothing: every sample is drawn
+    std::optional<double> frame_ms, slowest_ms, triangles, error, claimed, honesty;
+    enum class Place { equal, exact, off } place = Place::off;
+};
+
+std::string text_of(const std::optional<double>& value, const char* format) {
+    return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+std::string px(double value) {
+    return fmt::format("{:.3g} px", value);
+}
+
+std::optional<std::string> knob_text(const results::CellGroup& group,
+                                     const std::map<std::string, std::string>& knobs) {
+    const auto knob = knobs.find(group.method);
+    if (knob == knobs.end()) return std::nullopt;
+    return fmt::format("{} = {}", knob->second,
+                       results::value_text(results::member_of(*group.good.front(), "params",
+                                                              knob->second.c_str())));
+}
+
+Row row_of(const results::CellGroup& group, const EqualFlight& flight,
+           const std::map<std::string, std::string>& knobs) {
+    const auto middle = [&](const char* key, const char* inner) {
+        return measure::median(results::numbers_of(group.good, key, inner));
+    };
+    Row row;
+    row.method = group.method;
+    row.label = group.label;
+    row.knob = knob_text(group, knobs);
+    row.frame_ms = middle("frame_ms", "median");
+    row.slowest_ms = middle("frame_ms", "max");
+    row.triangles = middle("triangles", "mean");
+    row.error = results::pixel_error(group, results::ErrorMetric::p999);
+    row.claimed = middle("claimed_px", nullptr);
+    row.honesty = middle("bound_honesty", nullptr);
+    if (row.error && flight.meets(*row.error)) {
+        row.place = Row::Place::equal;
+    } else if (row.error && *row.error < kExactPx && !row.knob) {
+        row.place = Row::Place::exact;
+    }
+    return row;
+}
+
+std::vector<Row> rows_of(const EqualFlight& flight, const std::vector<Json::Value>& cells,
+                         const std::map<std::string, std::string>& knobs) {
+    std::vector<Row> rows;
+    for (const results::CellGroup& group : results::group_cells(cells)) {
+        if (group.scenario != flight.scenario || group.good.empty()) continue;
+        rows.push_back(row_of(group, flight, knobs));
+    }
+    std::ranges::stable_sort(rows, {}, [](const Row& row) {
+        return std::tuple(row.place == Row::Place::off,
+                          row.frame_ms.value_or(std::numeric_limits<double>::infinity()));
+    });
+    return rows;
+}
+
+bool breaks_claim(const Row& row) {
+    return row.honesty && *row.honesty > kKept;
+}
+
+std::string table_of(const std::vector<Row>& rows) {
+    std::vector<std::vector<std::string>> lines = {
+        {"method", "set to", "frame ms", "slowest ms", "triangles", "P99.9 px", "claims px"}};
+    for (const Row& row : rows) {
+        lines.push_back(
+            {row.label, row.knob.value_or("-"), text_of(row.frame_ms, "{:.1f}"),
+             text_of(row.slowest_ms, "{:.1f}"), text_of(row.triangles, "{:.0f}"),
+             text_of(row.error, "{:.2f}") + (row.place == Row::Place::off ? " (off)" : ""),
+             text_of(row.claimed, "{:.3g}") + (breaks_claim(row) ? " (!)" : "")});
+    }
+    return aligned_table(lines);
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+    if (words.size() < 2) return words.empty() ? "" : words.front();
+    return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
+}
+
+/// Who is fastest of those at the error, and against whom.
+std::string verdict(const EqualFlight& flight, const std::vector<Row>& rows) {
+    std::vector<const Row*> equal;
+    for (const Row& row : rows) {
+        if (row.place == Row::Place::equal && row.frame_ms) equal.push_back(&row);
+    }
+    const std::string promise = fmt::format(
+        "99.9 % of the pixels within {} of the true terrain, measured", px(flight.error_px));
+    if (equal.empty()) {
+        return fmt::format(
+            "No method shows the error that all were to show ({}), so their frame "
+            "times do not compare.\n",
+            promise);
+    }
+    std::vector<std::string> winners;
+    std::string others;
+    for (const Row* row : equal) {
+        if (*row->frame_ms <= *equal.front()->frame_ms * (1 + kTie)) {
+            winners.push_back(row->label);
+        } else if (others.empty()) {
+            others = fmt::format("; the next, {}, takes {:.1f} ms", row->label, *row->frame_ms);
+        }
+    }
+    std::string text = fmt::format(
+        "At equal error ({}) {} {} fastest: {:.1f} ms a frame (median){}", promise,
+        list_of(winners), winners.size() == 1 ? "is" : "are", *equal.front()->frame_ms, others);
+    for (const Row& row : rows) {
+        if (row.place != Row::Place::exact || !row.frame_ms) continue;
+        text += fmt::format("; {}, which draws every sample, {:.1f} ms", row.label, *row.frame_ms);
+    }
+    return text + ".\n";
+}
+
+std::string off_remark(const EqualFlight& flight, const Row& row) {
+    const std::string shown =
+        fmt::format("{} shows {}", row.label, row.error ? px(*row.error) : "no measured error");
+    if (std::ranges::find(flight.nearest, row.method) != flight.nearest.end() && flight.as_kept) {
+        return fmt::format("- {} (off): its knob cannot reach {}, and this is the nearest.\n",
+                           shown, px(flight.error_px));
+    }
+    if (!row.knob) return fmt::format("- {} (off): it has no knob to set.\n", shown);
+    if (!flight.as_kept) {
+        return fmt::format(
+            "- {} (off): the kept values of the knobs were found for the scenario as it is, and "
+            "other frames, sizes or settings give other errors.\n",
+            shown);
+    }
+    return fmt::format(
+        "- {} (off): the kept value of its knob gives another error here; `lodbench match` finds "
+        "it anew.\n",
+        shown);
+}
+
+std::string remarks_of(const EqualFlight& flight, const std::vector<Row>& rows) {
+    std::string text;
+    for (const Row& row : rows) {
+        if (row.place == Row::Place::off) text += off_remark(flight, row);
+    }
+    std::vector<std::string> broken;
+    for (const Row& row : rows) {
+        if (!breaks_claim(row)) continue;
+        broken.push_back(fmt::format("{} {:.2f} times", row.label, *row.honesty));
+    }
+    if (!broken.empty()) {
+        text += fmt::format(
+            "- (!) somewhere the measured error is above the bound that the method "
+            "claims: {}.\n",
+            list_of(broken));
+    }
+    return text;
+}
+
+}  // namespace
+
+bool EqualFlight::meets(double error) const {
+    return error >= error_px * (1 - tolerance) && error <= error_px * (1 + tolerance);
+}
+
+std::vector<EqualFlight> equal_flights(const Json::Value& run) {
+    std::vector<EqualFlight> flights;
+    const Json::Value& scenarios = results::member_of(run, "scenarios");
+    if (!scenarios.isArray()) return flights;
+    for (const Json::Value& scenario : scenarios) {
+        const Json::Value& error = results::member_of(scenario, "equal", "error_px");
+        const Json::Value& tolerance = results::member_of(scenario, "equal", "tolerance");
+        if (!error.isNumeric() || !tolerance.isNumeric() || !scenario["name"].isString()) continue;
+        EqualFlight& flight = flights.emplace_back();
+        flight.scenario = scenario["name"].asString();
+        flight.error_px = error.asDouble();
+        flight.tolerance = tolerance.asDouble();
+        flight.as_kept = results::member_of(scenario, "equal", "as_kept") == Json::Value(true);
+        const Json::Value& nearest = results::member_of(scenario, "equal", "nearest");
+        if (!nearest.isArray()) continue;
+        for (const Json::Value& method : nearest) {
+            if (method.isString()) flight.nearest.push_back(method.asString());
+        }
+    }
+    return flights;
+}
+
+std::map<std::string, std::string> quality_knobs(const Json::Value& run) {
+    std::map<std::string, std::string> knobs;
+    const Json::Value& plugins = results::member_of(run, "plugins");
+    if (!plugins.isArray()) return knobs;
+    for (const Json::Value& plugin : plugins) {
+        const Json::Value& methods = results::member_of(plugin, "methods");
+        if (!methods.isArray()) continue;
+        for (const Json::Value& method : methods) {
+            const Json::Value& knob = results::member_of(method, "quality_knob");
+            const Json::Value& id = results::member_of(method, "id");
+            if (knob.isString() && id.isString()) knobs.emplace(id.asString(), knob.asString());
+        }
+    }
+    return knobs;
+}
+
+std::string equal_text(const EqualFlight& flight, const std::vector<Json::Value>& cells,
+                       const std::map<std::string, std::string>& knobs) {
+    const std::vector<Row> rows = rows_of(flight, cells, knobs);
+    const std::string heading = fmt::format(
+        "## {}: every method set to the same measured error, P99.9 = {} within {:.3g} %",
+        flight.scenario, px(flight.error_px), 100 * flight.tolerance);
+    return fmt::format("{}\n\n{}\n{}{}", heading, table_of(rows), verdict(flight, rows),
+                       remarks_of(flight, rows));
+}
+
+}  // namespace lodbench::report
