@@ -140,9 +140,9 @@ std::string verdict(const EqualFlight& flight, const std::vector<Row>& rows) {
 std::string off_remark(const EqualFlight& flight, const Row& row) {
     const std::string shown =
         fmt::format("{} shows {}", row.label, row.error ? px(*row.error) : "no measured error");
-    if (std::ranges::find(flight.nearest, row.method) != flight.nearest.end() && flight.as_kept) {
-        return fmt::format("- {} (off): its knob cannot reach {}, and this is the nearest.\n",
-                           shown, px(flight.error_px));
+    const auto reason = flight.off.find(row.method);
+    if (flight.as_kept && reason != flight.off.end()) {
+        return fmt::format("- {} (off): {}.\n", shown, reason->second);
     }
     if (!row.knob) return fmt::format("- {} (off): it has no knob to set.\n", shown);
     if (!flight.as_kept) {
@@ -195,10 +195,10 @@ std::vector<EqualFlight> equal_flights(const Json::Value& run) {
         flight.error_px = error.asDouble();
         flight.tolerance = tolerance.asDouble();
         flight.as_kept = results::member_of(scenario, "equal", "as_kept") == Json::Value(true);
-        const Json::Value& nearest = results::member_of(scenario, "equal", "nearest");
-        if (!nearest.isArray()) continue;
-        for (const Json::Value& method : nearest) {
-            if (method.isString()) flight.nearest.push_back(method.asString());
+        const Json::Value& off = results::member_of(scenario, "equal", "off");
+        if (!off.isObject()) continue;
+        for (auto reason = off.begin(); reason != off.end(); ++reason) {
+            if (reason->isString()) flight.off[reason.name()] = reason->asString();
         }
     }
     return flights;

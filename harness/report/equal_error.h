@@ -18,7 +18,7 @@ struct EqualFlight {
     double tolerance = 0;  ///< ratio
     /// Flown as the knob values were found: frames, size and settings are the scenario's own.
     bool as_kept = true;
-    std::vector<std::string> nearest;  ///< methods that cannot reach the error
+    std::map<std::string, std::string> off;  ///< methods that show another error, and why
 
     [[nodiscard]] bool meets(double error) const;
 };

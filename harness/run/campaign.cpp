@@ -63,8 +63,10 @@ Json::Value to_json(const scenario::EqualError& equal, bool as_kept) {
     json["error_px"] = equal.error_px;
     json["tolerance"] = equal.tolerance;
     json["as_kept"] = as_kept;
-    json["nearest"] = Json::arrayValue;
-    for (const std::string& method : equal.nearest) json["nearest"].append(method);
+    json["off"] = Json::objectValue;
+    for (const scenario::EqualError::Knob& knob : equal.knobs) {
+        if (!knob.off.empty()) json["off"][knob.method] = knob.off;
+    }
     return json;
 }
 

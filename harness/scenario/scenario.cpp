@@ -234,22 +234,14 @@ std::string setting_text(const Section& method, std::string_view key, const toml
     method.refuse(key, "write a number, true or false, text, or an array of these to sweep");
 }
 
-/// The methods of `nearest`: each has a kept value.
-std::vector<std::string> read_nearest(Section& section, const EqualError& equal) {
-    const toml::node* node = section.node("nearest");
-    if (node == nullptr) return {};
-    const toml::array* array = node->as_array();
-    if (array == nullptr) section.refuse("nearest", "write an array of the ids of methods");
-    std::vector<std::string> methods;
-    for (const toml::node& entry : *array) {
-        const auto* id = entry.as_string();
-        if (id == nullptr || std::ranges::find(equal.knobs, id->get(), &EqualError::Knob::method) ==
-                                 equal.knobs.end()) {
-            section.refuse("nearest", describe(entry) + " is no method of [equal.knobs]");
-        }
-        methods.push_back(id->get());
+/// Why methods of `equal` show another error.
+void read_off(Section& section, EqualError& equal) {
+    auto off = section.section("off");
+    if (!off) return;
+    for (EqualError::Knob& knob : equal.knobs) {
+        if (const auto reason = off->text(knob.method)) knob.off = *reason;
     }
-    return methods;
+    off->refuse_unknown();
 }
 
 void read_equal(Section& top, Scenario& scenario) {
@@ -270,9 +262,10 @@ void read_equal(Section& top, Scenario& scenario) {
             knobs->refuse(id,
                           "not the id of a method; ids are of a-z 0-9 - as lodbench list shows");
         }
-        equal.knobs.push_back({id, setting_text(*knobs, id, node), knobs->where(id)});
+        if (node.is_array()) knobs->refuse(id, "write the one value that shows the error");
+        equal.knobs.push_back({id, setting_text(*knobs, id, node), knobs->where(id), ""});
     }
-    equal.nearest = read_nearest(*section, equal);
+    read_off(*section, equal);
     section->refuse_unknown();
 }
 

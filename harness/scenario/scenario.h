@@ -39,11 +39,11 @@ struct EqualError {
     struct Knob {
         std::string method, value;  ///< checked when the method's plugin is known
         std::string where;          ///< "file.toml:31"
+        std::string off;            ///< why it shows another error: "" where it shows that of all
     };
     double error_px = 1;      ///< P99.9 of the pixel error
     double tolerance = 0.05;  ///< ratio, in (0, 1)
     std::vector<Knob> knobs;
-    std::vector<std::string> nearest;  ///< methods of `knobs` whose knob cannot reach it
 };
 
 struct Scenario {
