@@ -81,14 +81,13 @@ TEST_F(EqualError, what_is_off_is_said_with_the_reason_that_is_known) {
     const std::vector<Json::Value> cells = {cell("a", 30, 2), cell("c", 5, 3)};
     EXPECT_THAT(
         text(cells),
-        HasSubstr("- c shows 3 px (off): the kept value of its knob gives another error here"));
+        HasSubstr("- c shows 3 px (off): the kept value of the knob gives another error here"));
     flight_.off["c"] = "its grid ends there";
     EXPECT_THAT(text(cells), HasSubstr("- c shows 3 px (off): its grid ends there.\n"));
     flight_.as_kept = false;
-    EXPECT_THAT(
-        text(cells),
-        AllOf(HasSubstr("- c shows 3 px (off): the kept values of the knobs were found for"),
-              Not(HasSubstr("grid"))));
+    EXPECT_THAT(text(cells),
+                AllOf(HasSubstr("- c shows 3 px (off): the kept values of the knobs are for"),
+                      Not(HasSubstr("grid"))));
     EXPECT_THAT(text({cell("a", 30, 2), cell("other", 5, 3)}),
                 HasSubstr("- other shows 3 px (off): it has no knob to set."));
 }
