@@ -62,6 +62,14 @@ TEST_F(EqualError, run_prints_the_comparison_and_summary_md_holds_it_with_the_wh
                       HasSubstr("| full-grid "), Not(HasSubstr("fps (range)"))));
     EXPECT_THAT(text_of(fs::path(out()) / "summary.md"),
                 AllOf(HasSubstr("## small: every method set to"), HasSubstr("fps (range)")));
+    const fs::path page = fs::path(out()) / "report.html";
+    ASSERT_EQ(
+        run_lodbench({"report", out(), "-o", page.string(), "--csv", out("csv")}, folder_.path())
+            .status,
+        0);
+    EXPECT_THAT(text_of(page), HasSubstr(">At equal error</h3>"));
+    EXPECT_THAT(text_of(fs::path(out("csv")) / "equal_error.csv"),
+                HasSubstr("lindstrom,tau = 1.5,"));
     // Whole again from what the folder holds.
     fs::remove(fs::path(out()) / "summary.md");
     EXPECT_EQ(run_lodbench({"run", "--resume", "--out", out()}, folder_.path()).status, 0);
