@@ -12,6 +12,7 @@
 #include "run/locations.h"
 #include "run/stage.h"
 #include "run/timing.h"
+#include "scenario/camera_track.h"
 #include "scenario/scenario.h"
 
 namespace lodbench::benchmarks {
@@ -28,7 +29,7 @@ public:
              std::shared_ptr<const terrain::HeightField> terrain,
              const std::filesystem::path& plugin, const std::string& method)
         : scenario_(scenario),
-          path_(scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain)),
+          track_(scenario, *terrain),
           stage_(run::StageSetup{std::move(terrain), plugin, method, {}, ""}, signs_) {
         stage_.prepare();
         stage_.upload();
@@ -40,13 +41,9 @@ public:
         measure::TimerVerdict bracket;  // not trusted: every frame ends with glFinish
         run::FrameTimer timer(stage_.device(), bracket);
         for (int frame = 0; frame < scenario_.frames; ++frame) {
-            Camera camera;
-            camera.viewport = scenario_.viewport;
-            camera.vertical_fov = scenario_.vertical_fov;
-            camera.near_plane = scenario_.near_plane;
-            path_->place(frame, camera);
+            const Camera camera = track_.camera(frame);
             timer.begin_frame();
-            stage_.select(camera, {frame, frame / scenario_.rate_hz});
+            stage_.select(camera, track_.clock(frame));
             timer.end_select();
             stage_.draw(picture_view(camera));
             timer.end_submit();
@@ -63,7 +60,7 @@ public:
 private:
     const scenario::Scenario& scenario_;
     run::VitalSigns signs_;
-    std::unique_ptr<scenario::FlightPath> path_;
+    scenario::CameraTrack track_;
     run::Stage stage_;
 };
 
@@ -74,7 +71,8 @@ double median(const std::vector<double>& values) {
 }  // namespace
 
 void harness_cost() {
-    const scenario::Scenario scenario = scenario::load_scenario(run::demo_scenario());
+    const scenario::Scenario scenario =
+        scenario::load_scenario(run::scenario_folder() / "trade/high.toml");
     const std::shared_ptr<const terrain::HeightField> terrain =
         terrain::load_terrain(scenario.terrain);
     std::vector<double> nothing_wall, nothing_host, grid_wall;

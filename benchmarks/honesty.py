@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What lindstrom's claimed bound is worth, and what keeping it costs.
 
-Flies the demo's path over Puget Sound with fields of view and tolerances from small to large, and
+Flies the path of trade/high.toml over Puget Sound with fields of view and tolerances from small to large, and
 prints the greatest measured screen error over tau for each pair of the options that bound it:
 
   midpoint, euclidean          the paper, lambda by the tangent
@@ -38,8 +38,8 @@ TOLERANCE = 1e-3  # float32 positions and depths
 
 
 def scenario(name, fov, frames, every):
-    """The demo's flight with another field of view."""
-    text = (ROOT / "scenarios/demo.toml").read_text(encoding="utf-8")
+    """That flight with another field of view."""
+    text = (ROOT / "scenarios/trade/high.toml").read_text(encoding="utf-8")
     changes = {
         "name": f'"{name}"',
         "vertical_fov": fov,
@@ -53,7 +53,7 @@ def scenario(name, fov, frames, every):
     for key, value in changes.items():
         text, found = re.subn(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
         if found != 1:
-            sys.exit(f"honesty.py: scenarios/demo.toml no longer has just one line of {key!r}")
+            sys.exit(f"honesty.py: scenarios/trade/high.toml no longer has just one line of {key!r}")
     return text
 
 

@@ -43,7 +43,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenarios", nargs="*", type=pathlib.Path,
-                        default=[ROOT / "scenarios/demo.toml"], help="default: the demo")
+                        default=[ROOT / "scenarios/trade/high.toml"], help="default: trade/high.toml")
     parser.add_argument("--program", default=ROOT / "build/release/bin/lodbench", type=pathlib.Path)
     parser.add_argument("--tau", default="1,2,4,8,16,32", help="pixels, separated by commas")
     parser.add_argument("--readings", default="none,triangle,range",

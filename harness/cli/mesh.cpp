@@ -19,8 +19,10 @@
 #include "run/exit_status.h"
 #include "run/locations.h"
 #include "run/mesh_export.h"
+#include "run/plan.h"
 #include "run/shared_signs.h"
 #include "run/stage.h"
+#include "scenario/camera_track.h"
 #include "scenario/scenario.h"
 #include "terrain/open_terrain.h"
 
@@ -41,7 +43,8 @@ struct MeshOptions {
 
 /// The scenario's own settings of the method, then what --set says, as `param=value` or
 /// `method.param=value`.
-run::Settings settings_of(const MeshOptions& options, const scenario::Scenario& scenario) {
+run::Settings settings_of(const MeshOptions& options, const scenario::Scenario& scenario,
+                          const run::MethodInfo& method) {
     run::Settings settings;
     const auto put = [&](const std::string& name, const std::string& value) {
         for (auto& setting : settings) {
@@ -52,6 +55,7 @@ run::Settings settings_of(const MeshOptions& options, const scenario::Scenario& 
         }
         settings.emplace_back(name, value);
     };
+    if (const auto kept = run::kept_knob(scenario, method)) put(kept->first, kept->second);
     run::Settings chosen;
     for (const std::string& text : options.settings) {
         const run::Setting setting = run::parse_setting(text, "[METHOD.]PARAM=VALUE");
@@ -98,8 +102,7 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
     terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(scenario.terrain);
     tell_warnings(opened.terrain->info(), opened.provenance);
     const std::shared_ptr<const Terrain> terrain = std::move(opened.terrain);
-    const auto path =
-        scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain);
+    const scenario::CameraTrack track(scenario, *terrain);
     run::Stage stage({.terrain = terrain,
                       .plugin = method.plugin,
                       .method = method.id,
@@ -110,13 +113,8 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
     stage.prepare();
     stage.upload();
     stage.resize(scenario.viewport);
-    Camera camera;
-    camera.vertical_fov = scenario.vertical_fov;
-    camera.viewport = scenario.viewport;
-    camera.near_plane = scenario.near_plane;
-    for (int frame = 0; frame <= options.frame; ++frame) {
-        path->place(frame, camera);
-        stage.select(camera, {.frame = frame, .seconds = frame / scenario.rate_hz});
+    for (int frame = track.first_frame(); frame <= options.frame; ++frame) {
+        stage.select(track.camera(frame), track.clock(frame));
         stage.settle();
     }
     stage.pause_background();
@@ -139,7 +137,7 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
     }
     context.terrain = terrain->info();
     context.frame = options.frame;
-    context.camera = camera;
+    context.camera = track.camera(options.frame);
     context.clipped = !options.before_clipping;
     const run::Mesh mesh = options.before_clipping
                                ? run::weld(surface)
@@ -162,9 +160,9 @@ int run_mesh(const MeshOptions& options) {
         throw InputError(fmt::format("--frame {}: the flight of {} has frames 0 to {}",
                                      options.frame, scenario.name, scenario.frames - 1));
     }
-    const run::Settings settings = settings_of(options, scenario);
     const run::MethodInfo method =
         run::find_method(find_plugins(options.plugin_dirs), options.method, "mesh");
+    const run::Settings settings = settings_of(options, scenario, method);
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
     const std::shared_ptr<run::VitalSigns> signs = run::map_signs();
     const base::Answer answer = base::run_isolated(

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "api/error.h"
 #include "base/console.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
+#include "report/equal_error.h"
 #include "report/table.h"
 #include "results/json.h"
 #include "run/locations.h"
@@ -21,12 +24,29 @@ struct Options : CampaignOptions {
     bool no_truth = false;
 };
 
+/// Of flights at equal error the table that compares them, of others that of all figures.
+std::string tables(const run::CampaignOutcome& outcome) {
+    const auto knobs = report::quality_knobs(outcome.run);
+    std::vector<report::TableRow> rows = report::table_rows(outcome.cells, outcome.seed);
+    std::vector<report::TableRow> equal;
+    std::string text;
+    for (const report::EqualFlight& flight : report::equal_flights(outcome.run)) {
+        text += report::equal_text(flight, outcome.cells, knobs) + "\n";
+        const auto others = std::ranges::stable_partition(
+            rows, [&](const report::TableRow& row) { return row.scenario != flight.scenario; });
+        std::ranges::move(others, std::back_inserter(equal));
+        rows.erase(others.begin(), others.end());
+    }
+    if (!rows.empty()) text += report::text_table(rows);
+    return text + report::remarks_text(equal);
+}
+
 void print_outcome(const run::CampaignOutcome& outcome, bool json) {
     if (json) {
         base::print("{}\n", results::to_text(to_json(outcome)));
         return;
     }
-    base::print("\n{}\n", report::text_table(report::table_rows(outcome.cells, outcome.seed)));
+    base::print("\n{}\n", tables(outcome));
     base::print("results   {}\npictures  {}\n", outcome.out.string(),
                 (outcome.out / "shots").string());
 }

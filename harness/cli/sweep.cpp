@@ -50,6 +50,7 @@ std::map<std::string, std::string> read_knob_values(const std::vector<std::strin
 /// Adds a setting for each knob that neither the command line nor the scenario sets.
 void spread_knobs(Options& options, const std::vector<run::PluginListing>& plugins,
                   std::map<std::string, std::string>& knobs) {
+    options.request.kept_knobs = false;
     auto given = read_knob_values(options.knob_values);
     const run::Plan plan = run::make_plan(options.request, plugins);
     std::set<std::string> methods;

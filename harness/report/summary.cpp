@@ -4,9 +4,22 @@
 
 #include <cstdint>
 
+#include "report/equal_error.h"
 #include "report/table.h"
 
 namespace lodbench::report {
+namespace {
+
+std::string equal_texts(const std::vector<Json::Value>& cells, const Json::Value& run) {
+    const auto knobs = quality_knobs(run);
+    std::string text;
+    for (const EqualFlight& flight : equal_flights(run)) {
+        text += equal_text(flight, cells, knobs) + "\n";
+    }
+    return text;
+}
+
+}  // namespace
 
 std::string summary_text(const std::vector<Json::Value>& cells,
                          const std::vector<std::string>& warnings, const Json::Value& run) {
@@ -16,7 +29,8 @@ std::string summary_text(const std::vector<Json::Value>& cells,
                               : fmt::format("- {}: {}\n", title, markdown_text(value.asString()));
     };
     // Read as a comment: the tables first, what they depend on folded away below.
-    std::string text = markdown_table(table_rows(cells, seed));
+    std::string text = equal_texts(cells, run);
+    text += markdown_table(table_rows(cells, seed));
     const auto fold = [&text](const std::string& title) {
         text += fmt::format("\n<details><summary>{}</summary>\n\n", title);
     };

@@ -107,8 +107,6 @@ std::string text_table(const std::vector<TableRow>& rows) {
         return text + "\n";
     };
     std::string text;
-    std::string failures;
-    std::string warnings;
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const TableRow& row = rows[r];
         if (r == 0 || row.scenario != rows[r - 1].scenario) {
@@ -116,6 +114,14 @@ std::string text_table(const std::vector<TableRow>& rows) {
             text += line(columns[0], [&](std::size_t i) { return columns[i]; });
         }
         text += line(row.label, [&](std::size_t i) { return row.fields[i - 1]; });
+    }
+    return text + remarks_text(rows);
+}
+
+std::string remarks_text(const std::vector<TableRow>& rows) {
+    std::string failures;
+    std::string warnings;
+    for (const TableRow& row : rows) {
         for (const std::string& failure : row.failures) {
             failures += fmt::format("  {}, {}: {}\n", row.label, row.scenario, failure);
         }
@@ -123,6 +129,7 @@ std::string text_table(const std::vector<TableRow>& rows) {
             warnings += fmt::format("  {}, {}: {}\n", row.label, row.scenario, warning);
         }
     }
+    std::string text;
     if (!warnings.empty()) text += "\nWarnings\n" + warnings;
     if (!failures.empty()) text += "\nNot measured\n" + failures;
     return text;

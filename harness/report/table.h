@@ -27,6 +27,8 @@ struct TableRow {
 /// For a terminal: columns aligned, one block a scenario, failures below. For summary.md: Markdown,
 /// failures folded.
 [[nodiscard]] std::string text_table(const std::vector<TableRow>& rows);
+/// What text_table has below its tables.
+[[nodiscard]] std::string remarks_text(const std::vector<TableRow>& rows);
 [[nodiscard]] std::string markdown_table(const std::vector<TableRow>& rows);
 
 /// What is no Markdown and no HTML, whatever it holds; one line.

@@ -38,6 +38,8 @@ Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
             json_method["version"] = method.version;
             json_method["title"] = method.title;
             json_method["citation"] = method.citation;
+            json_method["quality_knob"] =
+                method.quality_knob.empty() ? Json::Value::null : Json::Value(method.quality_knob);
             entry["methods"].append(json_method);
         }
         json.append(entry);
@@ -48,6 +50,24 @@ Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
 /// Of a recorded flight's file.
 std::string flight_checksum(const scenario::Scenario& scenario) {
     return results::checksum_of(base::read_text(scenario.path.recorded));
+}
+
+/// Whether the flight is that for which its knob values were found.
+bool flown_as_kept(const RunRequest& request) {
+    return request.kept_knobs && !request.overrides.frames && !request.overrides.viewport &&
+           request.settings.empty();
+}
+
+Json::Value to_json(const scenario::EqualError& equal, bool as_kept) {
+    Json::Value json;
+    json["error_px"] = equal.error_px;
+    json["tolerance"] = equal.tolerance;
+    json["as_kept"] = as_kept;
+    json["off"] = Json::objectValue;
+    for (const scenario::EqualError::Knob& knob : equal.knobs) {
+        if (!knob.off.empty()) json["off"][knob.method] = knob.off;
+    }
+    return json;
 }
 
 Json::Value run_context(const RunRequest& request, const Plan& plan,
@@ -74,6 +94,7 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
         if (!scenario.path.recorded.empty()) {
             json["flight_checksum"] = flight_checksum(scenario);
         }
+        if (scenario.equal) json["equal"] = to_json(*scenario.equal, flown_as_kept(request));
         run["scenarios"].append(json);
     }
     run["plugins"] = listings_to_json(plugins);
@@ -138,6 +159,7 @@ public:
             if (nothing_is_kept()) throw;
             outcome_.error = error.what();
         }
+        outcome_.run = run_;
         return std::move(outcome_);
     }
 

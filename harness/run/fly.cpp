@@ -24,6 +24,7 @@
 #include "run/frame_measurer.h"
 #include "run/stage.h"
 #include "run/timing.h"
+#include "scenario/camera_track.h"
 #include "scenario/scenario.h"
 #include "terrain/open_terrain.h"
 #include "terrain/toml_file.h"
@@ -138,15 +139,8 @@ private:
         replay_ = replay;
         signs_.replay = replay;
     }
-    [[nodiscard]] Camera camera_at(int frame) const {
-        Camera camera;
-        camera.vertical_fov = scenario_.vertical_fov;
-        camera.viewport = scenario_.viewport;
-        camera.near_plane = scenario_.near_plane;
-        path_->place(frame, camera);
-        return camera;
-    }
-    [[nodiscard]] Clock clock_at(int frame) const { return {frame, frame / scenario_.rate_hz}; }
+    [[nodiscard]] Camera camera_at(int frame) const { return track_->camera(frame); }
+    [[nodiscard]] Clock clock_at(int frame) const { return track_->clock(frame); }
 
     const CellSpec& spec_;
     VitalSigns& signs_;
@@ -154,7 +148,7 @@ private:
     scenario::Scenario scenario_;
     std::shared_ptr<const Terrain> terrain_;          ///< what the harness reads
     std::shared_ptr<const Terrain> methods_terrain_;  ///< the same; its reading is the method's own
-    std::unique_ptr<scenario::FlightPath> path_;
+    std::optional<scenario::CameraTrack> track_;
     std::unique_ptr<Stage> stage_;
     std::unique_ptr<FrameMeasurer> measurer_;  // needs the stage
     measure::TimerVerdict verdict_;
@@ -182,7 +176,7 @@ void Flight::open() {
     methods_terrain_ = stored ? terrain::open_terrain(scenario_.terrain) : terrain_;
     // Known before an hour's flight, not after.
     if (stored && measures_truth()) terrain::require_room_for_whole(terrain_->info());
-    path_ = scenario::make_path(scenario_.path, scenario_.frames, scenario_.rate_hz, *terrain_);
+    track_.emplace(scenario_, *terrain_);
     result_.plugin_checksum = plugin_checksum();
     result_.terrain_name = terrain_->info().name;
     result_.terrain_checksum = terrain_->info().checksum;
@@ -262,10 +256,10 @@ void Flight::choose_frames() {
 }
 
 void Flight::warm_up() {
-    const Camera first = camera_at(0);
     for (int i = 0; i < scenario_.warmup_frames; ++i) {
+        const int frame = std::min(track_->first_frame() + i, 0);
         begin_frame(0);
-        stage_->select(first, clock_at(0));
+        stage_->select(camera_at(frame), clock_at(frame));
         stage_->draw_picture();
         glFinish();
     }

@@ -15,7 +15,7 @@ struct Knob {
     std::string name;
     bool integer = false;
     double minimum = 0, maximum = 0;
-    double start = 0;  ///< the parameter's default
+    double start = 0;  ///< where a search begins: the parameter's default, or what a scenario keeps
 
     /// Positive ranges over more than a decade are walked by factors, others by differences.
     [[nodiscard]] bool geometric() const { return minimum > 0 && maximum >= 10 * minimum; }

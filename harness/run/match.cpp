@@ -26,6 +26,16 @@ std::vector<MethodInfo> methods_of(const Plan& plan, const std::vector<PluginLis
     return methods;
 }
 
+/// The search begins at the value that the scenario keeps.
+std::optional<Knob> knob_to_find(const MethodInfo& info, const scenario::Scenario& scenario) {
+    std::optional<Knob> knob = quality_knob(info);
+    const auto kept = knob ? kept_knob(scenario, info) : std::nullopt;
+    if (!kept) return knob;
+    const Params params = make_params(info, {*kept}, scenario.name);
+    knob->start = knob->integer ? double(params.integer(knob->name)) : params.real(knob->name);
+    return knob;
+}
+
 /// Each method has one setting: a swept one would make several surfaces, each with a knob of its
 /// own.
 void require_one_setting(const Plan& plan, const std::string& method,
@@ -135,6 +145,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
                    const ProbeObserver& probed) {
     const bool of_the_truth = target.quantity == results::MatchTarget::Quantity::pixel_error;
     RunRequest request = asked;
+    request.kept_knobs = false;
     if (of_the_truth) request.overrides.truth = true;
     if (request.scenarios.size() > 1) {
         throw InputError("match: name one scenario; a knob that fits one flight fits no other");
@@ -145,7 +156,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
     for (const MethodInfo& info : methods_of(plan, plugins)) {
         MatchedMethod& method = outcome.methods.emplace_back();
         method.method = info.id;
-        method.knob = quality_knob(info);
+        method.knob = knob_to_find(info, plan.scenarios.front());
         method.asynchronous = (info.capabilities & kAsynchronous) != 0;
         require_one_setting(plan, info.id, method.knob);
     }

@@ -100,6 +100,34 @@ std::string cell_id(const std::string& method, const Settings& settings,
     return id;
 }
 
+/// Adds the knob values that the scenario keeps where a request sets none.
+void set_kept_knobs(const scenario::Scenario& scenario,
+                    const std::map<std::string, MethodInfo>& methods,
+                    std::vector<scenario::MethodRequest>& requests) {
+    for (scenario::MethodRequest& request : requests) {
+        const auto method = methods.find(request.id);
+        if (method == methods.end()) continue;  // refused by whoever looks for it
+        const auto kept = kept_knob(scenario, method->second);
+        if (!kept) continue;
+        if (std::ranges::none_of(request.settings,
+                                 [&](const auto& setting) { return setting.first == kept->first; }))
+            request.settings.push_back({kept->first, {kept->second}});
+    }
+}
+
+/// A knob value that is kept for nobody is a mistyped id, or a plugin that is not here.
+void warn_of_unknown(const scenario::Scenario& scenario,
+                     const std::map<std::string, MethodInfo>& methods,
+                     std::vector<std::string>& warnings) {
+    if (!scenario.equal) return;
+    for (const scenario::EqualError::Knob& knob : scenario.equal->knobs) {
+        if (methods.contains(knob.method)) continue;
+        warnings.push_back(
+            fmt::format("{}: no method '{}' was found, for which a knob value is kept", knob.where,
+                        knob.method));
+    }
+}
+
 /// The requests of one scenario, with what the command line says in place of what the file says.
 std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scenario,
                                                  const std::vector<std::string>& chosen,
@@ -149,6 +177,21 @@ bool RunRequest::names_cells() const {
     return !scenarios.empty() || !methods.empty() || !settings.empty() || !device.empty() ||
            overrides.frames || overrides.viewport || overrides.seed || overrides.repetitions ||
            overrides.truth || overrides.economy;
+}
+
+std::optional<Settings::value_type> kept_knob(const scenario::Scenario& scenario,
+                                              const MethodInfo& method) {
+    if (!scenario.equal) return std::nullopt;
+    const auto kept =
+        std::ranges::find(scenario.equal->knobs, method.id, &scenario::EqualError::Knob::method);
+    if (kept == scenario.equal->knobs.end()) return std::nullopt;
+    if (method.quality_knob.empty()) {
+        throw InputError(fmt::format("{}: method '{}' has no quality knob; leave it out",
+                                     kept->where, method.id));
+    }
+    Settings::value_type setting{method.quality_knob, kept->value};
+    (void)make_params(method, {setting}, kept->where);
+    return setting;
 }
 
 void interleave(std::vector<PlannedCell>& cells, std::uint64_t seed) {
@@ -202,7 +245,10 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
                             file.string(), scenario.name));
         }
         const fs::path origin = fs::absolute(file);
-        for (const auto& wanted : requests_of(scenario, request.methods, command, methods)) {
+        auto requests = requests_of(scenario, request.methods, command, methods);
+        if (request.kept_knobs) set_kept_knobs(scenario, methods, requests);
+        warn_of_unknown(scenario, methods, plan.warnings);
+        for (const scenario::MethodRequest& wanted : requests) {
             const MethodInfo& method = find_method(plugins, wanted.id, wanted.where);
             used.insert(method.id);
             for (const Settings& settings : combinations(wanted, scenario.repetitions)) {

@@ -5,6 +5,7 @@
 #include <json/value.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct RunRequest {
     std::string device;
     std::string command_line;
     bool resume = false;
+    /// Methods fly at the knob values that a scenario keeps ([equal]) where nothing else sets them.
+    bool kept_knobs = true;
 
     /// Whether anything in it says which cells are meant.
     [[nodiscard]] bool names_cells() const;
@@ -44,6 +47,12 @@ struct Plan {
     std::uint64_t seed = 1;
     std::vector<std::string> warnings;
 };
+
+/// The setting of its quality knob at which a method shows the error that the scenario keeps
+/// ([equal]); nothing where it keeps none for the method. Throws InputError for a method without a
+/// knob and for a value that does not fit.
+[[nodiscard]] std::optional<Settings::value_type> kept_knob(const scenario::Scenario& scenario,
+                                                            const MethodInfo& method);
 
 /// Expands a request. Throws InputError, before anything runs, for an unknown method (listing the
 /// plugins that were refused), a setting that does not fit, or two scenarios of one name.

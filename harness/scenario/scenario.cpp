@@ -16,6 +16,7 @@
 #include "terrain/open_terrain.h"
 #include "terrain/synthetic.h"
 #include "terrain/toml_file.h"
+#include "terrain/upsample.h"
 
 namespace lodbench::scenario {
 namespace {
@@ -77,6 +78,23 @@ void read_synthetic(Section& section, terrain::TerrainSource& source) {
     shape->refuse_unknown();
 }
 
+void read_upsampling(Section& terrain, terrain::TerrainSource& source) {
+    auto section = terrain.section("upsample");
+    if (!section) return;
+    const auto factor = section->integer("factor", 2, terrain::kGreatestFactor);
+    if (!factor) section->require("factor", "write how many times as many samples, 2 to 64");
+    terrain::Upsampling& upsampling = source.upsampling.emplace();
+    upsampling.factor = int(*factor);
+    set(upsampling.fractal_amplitude, section->number("fractal", {0, 1e5}));
+    set(upsampling.seed, section->integer("seed", 0, kMaxSeed));
+    section->refuse_unknown();
+    try {
+        terrain::check_upsampling(upsampling);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", section->where(), error.what()));
+    }
+}
+
 void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& scenario) {
     auto section = top.section("terrain");
     if (!section) {
@@ -121,6 +139,7 @@ void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& s
         source.origin_x = (*origin)[0];
         source.origin_y = (*origin)[1];
     }
+    read_upsampling(*section, source);
     section->refuse_unknown();
     try {
         terrain::check_source(source);
@@ -151,16 +170,23 @@ void read_flight(Section& top, const std::filesystem::path& folder, Scenario& sc
     set(scenario.frames, frames);
     set(scenario.rate_hz, flight->number("rate_hz", {1e-3, 1e6}));
     set(scenario.warmup_frames, flight->integer("warmup_frames", 0, kMaxFrames));
+    set(scenario.warmup_flies, flight->boolean("warmup_flies"));
     scenario.path = read_path(*flight, folder);
     flight->refuse_unknown();
     if (scenario.path.kind != PathKind::recorded || frames) return;
     const std::size_t rows = load_recorded(scenario.path.recorded).size();
-    if (rows > std::size_t(kMaxFrames)) {
+    const auto lead = std::size_t(scenario.warmup_flies ? scenario.warmup_frames : 0);
+    if (rows <= lead) {
+        flight->refuse("file", fmt::format("{} frames, and {} are flown for warm-up; write fewer "
+                                           "warmup_frames",
+                                           rows, lead));
+    }
+    if (rows - lead > std::size_t(kMaxFrames)) {
         flight->refuse("file", fmt::format("{} frames, at most {} are flown; write frames = ... to "
                                            "fly the first of them",
-                                           rows, kMaxFrames));
+                                           rows - lead, kMaxFrames));
     }
-    scenario.frames = int(rows);
+    scenario.frames = int(rows - lead);
 }
 
 void read_measure_and_run(Section& top, Scenario& scenario) {
@@ -212,6 +238,41 @@ std::string setting_text(const Section& method, std::string_view key, const toml
     }
     if (node.is_integer() || node.is_boolean()) return describe(node);
     method.refuse(key, "write a number, true or false, text, or an array of these to sweep");
+}
+
+/// Why methods of `equal` show another error.
+void read_off(Section& section, EqualError& equal) {
+    auto off = section.section("off");
+    if (!off) return;
+    for (EqualError::Knob& knob : equal.knobs) {
+        if (const auto reason = off->text(knob.method)) knob.off = *reason;
+    }
+    off->refuse_unknown();
+}
+
+void read_equal(Section& top, Scenario& scenario) {
+    auto section = top.section("equal");
+    if (!section) return;
+    EqualError& equal = scenario.equal.emplace();
+    const auto error = section->number("error_px", {1e-6, 1e6});
+    if (!error) section->require("error_px", "write the P99.9 of the pixel error, in pixels");
+    equal.error_px = *error;
+    set(equal.tolerance, section->number("tolerance", {1e-4, 0.5}));
+    auto knobs = section->section("knobs");
+    if (!knobs) {
+        section->require("knobs", "write [equal.knobs] with METHOD = VALUE, its quality knob's");
+    }
+    for (const auto& [key, node] : knobs->table()) {
+        const std::string id(key.str());
+        if (!is_name(id, true)) {
+            knobs->refuse(id,
+                          "not the id of a method; ids are of a-z 0-9 - as lodbench list shows");
+        }
+        if (node.is_array()) knobs->refuse(id, "write the one value that shows the error");
+        equal.knobs.push_back({id, setting_text(*knobs, id, node), knobs->where(id), ""});
+    }
+    read_off(*section, equal);
+    section->refuse_unknown();
 }
 
 MethodRequest read_method(Section& section) {
@@ -279,7 +340,7 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
     scenario.text = text;
     // Unknown tables are told first: a mistyped [flight] must not read as a missing one.
     for (const char* key :
-         {"name", "terrain", "camera", "viewport", "flight", "measure", "run", "method"}) {
+         {"name", "terrain", "camera", "viewport", "flight", "measure", "run", "equal", "method"}) {
         (void)top.node(key);
     }
     top.refuse_unknown();
@@ -288,6 +349,7 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
     read_camera(top, scenario);
     read_flight(top, folder, scenario);
     read_measure_and_run(top, scenario);
+    read_equal(top, scenario);
     read_methods(top, scenario);
     return scenario;
 }

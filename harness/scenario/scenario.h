@@ -34,6 +34,19 @@ struct MeasureOptions {
     double budget_ms = 16.67;  ///< for the jank sum
 };
 
+/// What makes the frame times of a flight comparable: the value of each method's quality knob at
+/// which it measures the same error, found by `match` and kept.
+struct EqualError {
+    struct Knob {
+        std::string method, value;  ///< checked when the method's plugin is known
+        std::string where;          ///< "file.toml:31"
+        std::string off;            ///< why it shows another error: "" where it shows that of all
+    };
+    double error_px = 1;      ///< P99.9 of the pixel error
+    double tolerance = 0.05;  ///< ratio, in (0, 1)
+    std::vector<Knob> knobs;
+};
+
 struct Scenario {
     std::string name;  ///< [A-Za-z0-9_-]+, the file's stem unless given
     std::string text;  ///< the TOML as read, for the record
@@ -42,15 +55,17 @@ struct Scenario {
     double vertical_fov = 1.0471975511965976;  ///< radians
     double near_plane = 1.0;                   ///< metres
     int frames = 120;  ///< >= 1; of a recorded flight, unless it is written, all rows of its file
-    int warmup_frames = 5;  ///< >= 0
-    double rate_hz = 60;    ///< simulated frames per second
-    int repetitions = 3;    ///< >= 1
+    int warmup_frames = 5;      ///< >= 0
+    bool warmup_flies = false;  ///< the way to frame 0, with which the path begins
+    double rate_hz = 60;        ///< simulated frames per second
+    int repetitions = 3;        ///< >= 1
     std::uint64_t seed = 1;
     double cell_time_limit_s = 600;
     double frame_time_limit_s = 60;  ///< no sign of life for so long is a hang
     std::uint64_t memory_limit_bytes = 8ULL << 30;
     MeasureOptions measure;
     PathSpec path;
+    std::optional<EqualError> equal;
     std::vector<MethodRequest> methods;  ///< empty: all methods that were found
 };
 

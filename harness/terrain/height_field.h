@@ -43,6 +43,16 @@ private:
     mutable std::unique_ptr<TileSummaries> summaries_;
 };
 
+/// A larger terrain from a smaller one: samples of the result between two of the source, and what
+/// is added there.
+struct Upsampling {
+    int factor = 2;                   ///< 1 to 64
+    double fractal_amplitude = 0;     ///< metres, >= 0; above 0 the factor is a power of two
+    std::uint64_t seed = 1;           ///< of the fractal
+    std::optional<int> rows = {};     ///< of the result, kept from the north; all if empty
+    std::optional<int> columns = {};  ///< kept from the west
+};
+
 /// What names a terrain, in a scenario or on the command line: either a file or a synthetic form.
 /// Everything optional overrides what the file (or its sidecar) says.
 struct TerrainSource {
@@ -61,6 +71,8 @@ struct TerrainSource {
     bool cold = false;  ///< a store's tiles come from the disk, not from what the system holds
     /// A store only: nothing holds the whole of it in memory.
     bool out_of_core = false;
+    /// Made larger once it is read, in memory; what is overridden above is that of the smaller one.
+    std::optional<Upsampling> upsampling;
     std::string where;  ///< "scenario.toml:12", put in front of messages; may be empty
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <new>
+#include <span>
 #include <vector>
 
 #include "api/error.h"
@@ -10,7 +11,9 @@
 #include "terrain/open_terrain.h"
 #include "terrain/raster.h"
 #include "terrain/synthetic.h"
+#include "terrain/terrain_rows.h"
 #include "terrain/tile_store.h"
+#include "terrain/upsample.h"
 #include "terrain/void_fill.h"
 
 namespace lodbench::terrain {
@@ -51,6 +54,28 @@ LoadedTerrain load_synthetic(const TerrainSource& source) {
     return {std::make_unique<HeightField>(info, std::move(heights)), {.kind = "synthetic"}};
 }
 
+/// Loaded before, not passed over: so the library that reads a raster stays out of this process.
+LoadedTerrain load_upsampled(const TerrainSource& source) {
+    TerrainSource smaller = source;
+    smaller.upsampling.reset();
+    LoadedTerrain result;
+    with_loaded_rows(smaller, [&](TerrainRows& rows) {
+        const TerrainInfo info = upsampled(rows.info(), *source.upsampling);
+        check_field_size(fmt::format("terrain '{}'", info.name), info.rows, info.columns,
+                         "take a smaller factor, or make a store (.tiles) with `lodbench terrain "
+                         "upsample`");
+        std::vector<float> heights;
+        heights.reserve(std::size_t(info.rows) * std::size_t(info.columns));
+        upsample(rows, *source.upsampling, [&](std::span<const float> row) {
+            heights.insert(heights.end(), row.begin(), row.end());
+        });
+        result.field = std::make_unique<HeightField>(info, std::move(heights));
+        result.provenance = rows.provenance();
+    });
+    result.provenance.kind += fmt::format(", upsampled by {}", source.upsampling->factor);
+    return result;
+}
+
 }  // namespace
 
 void check_raster_size(const std::filesystem::path& file, std::int64_t rows, std::int64_t columns) {
@@ -60,6 +85,7 @@ void check_raster_size(const std::filesystem::path& file, std::int64_t rows, std
 LoadedTerrain load_terrain_with_provenance(const TerrainSource& source) {
     try {
         check_source(source);
+        if (source.upsampling) return load_upsampled(source);
         if (source.file.empty()) return load_synthetic(source);
         return is_store(source.file) ? load_store(source) : load_raster(source);
     } catch (const InputError& error) {

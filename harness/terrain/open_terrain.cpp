@@ -12,6 +12,7 @@
 #include "terrain/load_terrain.h"
 #include "terrain/memory.h"
 #include "terrain/tile_store.h"
+#include "terrain/upsample.h"
 
 namespace lodbench::terrain {
 namespace {
@@ -56,11 +57,19 @@ void check_source(const TerrainSource& source) {
                              : "terrain: both a file and a synthetic form are named; name one");
     }
     check_overrides(source);
+    if (source.upsampling) check_upsampling(*source.upsampling);
     const bool stored = !source.file.empty() && is_store(source.file);
     if (stored) check_store(source);
     for (const auto& [name, set] :
          {std::pair{"cold", source.cold}, {"out_of_core", source.out_of_core}}) {
-        if (!set || stored) continue;
+        if (!set) continue;
+        if (source.upsampling) {
+            throw InputError(
+                fmt::format("{}: {} is set, but what is upsampled lies in memory; leave it out, or "
+                            "make a larger store with `lodbench terrain upsample`",
+                            source.file.empty() ? source.synthetic : source.file.string(), name));
+        }
+        if (stored) continue;
         throw InputError(fmt::format(
             "{}: {} is set, but only a tiled store (.tiles) stays on disk; leave it out, or make "
             "it one with `lodbench terrain import`",
@@ -73,7 +82,7 @@ std::unique_ptr<Terrain> open_terrain(const TerrainSource& source) {
 }
 
 OpenTerrain open_terrain_with_provenance(const TerrainSource& source) {
-    if (source.file.empty() || !is_store(source.file)) {
+    if (source.file.empty() || !is_store(source.file) || source.upsampling) {
         LoadedTerrain loaded = load_terrain_with_provenance(source);
         return {std::move(loaded.field), std::move(loaded.provenance)};
     }

@@ -19,8 +19,8 @@ struct OpenTerrain {
 };
 
 /// Opens a store (`.tiles`), of which nothing but header and index is read, or loads what else the
-/// source names. Throws InputError with file, value and remedy, EnvironmentError where the disk
-/// refuses.
+/// source names, an upsampled store among it. Throws InputError with file, value and remedy,
+/// EnvironmentError where the disk refuses.
 [[nodiscard]] OpenTerrain open_terrain_with_provenance(const TerrainSource& source);
 [[nodiscard]] std::unique_ptr<Terrain> open_terrain(const TerrainSource& source);
 

@@ -61,12 +61,6 @@ private:
     int row_ = 0;
 };
 
-void give_loaded(const TerrainSource& source, const std::function<void(TerrainRows&)>& body) {
-    LoadedTerrain loaded = load_terrain_with_provenance(source);
-    ServedRows rows(std::move(loaded.field), std::move(loaded.provenance));
-    body(rows);
-}
-
 /// Nothing where the file was passed over to its end; else the row with the first void.
 std::optional<int> give_raster(const TerrainSource& source,
                                const std::function<void(TerrainRows&)>& body) {
@@ -81,9 +75,15 @@ std::optional<int> give_raster(const TerrainSource& source,
 
 }  // namespace
 
+void with_loaded_rows(const TerrainSource& source, const std::function<void(TerrainRows&)>& body) {
+    LoadedTerrain loaded = load_terrain_with_provenance(source);
+    ServedRows rows(std::move(loaded.field), std::move(loaded.provenance));
+    body(rows);
+}
+
 void with_rows(const TerrainSource& source, const std::function<void(TerrainRows&)>& body) {
     check_source(source);
-    if (source.file.empty()) return give_loaded(source, body);
+    if (source.file.empty() || source.upsampling) return with_loaded_rows(source, body);
     if (is_store(source.file)) {
         auto store = std::make_unique<StoredTerrain>(source.file, source.cold);
         Provenance provenance = provenance_of(*store);
@@ -93,7 +93,7 @@ void with_rows(const TerrainSource& source, const std::function<void(TerrainRows
     const std::optional<int> row = give_raster(source, body);
     if (!row) return;
     try {
-        give_loaded(source, body);
+        with_loaded_rows(source, body);
     } catch (const InputError& error) {
         throw InputError(
             fmt::format("{} (row {} has samples without data, and filling them needs "

@@ -35,6 +35,10 @@ protected:
 /// are filled from whole columns: a raster in which one turns up is loaded, and `body` begins anew.
 /// Throws what `load_terrain` throws, InputError where a raster with voids does not fit into the
 /// memory, and what `body` throws.
+/// An upsampled source is loaded.
 void with_rows(const TerrainSource& source, const std::function<void(TerrainRows&)>& body);
+
+/// The same of a source that is loaded first.
+void with_loaded_rows(const TerrainSource& source, const std::function<void(TerrainRows&)>& body);
 
 }  // namespace lodbench::terrain

@@ -16,7 +16,6 @@
 namespace lodbench::terrain {
 namespace {
 
-constexpr int kGreatestFactor = 64;
 constexpr int kChunk = 4096;  // columns that a thread takes at once
 
 /// Weights of the samples at -1, 0, 1, 2 for the place t of [0, 1). Exactly 0, 1, 0, 0 at t = 0.
@@ -171,8 +170,15 @@ private:
 
 }  // namespace
 
-TerrainInfo upsampled(const TerrainInfo& info, const Upsampling& upsampling) {
-    const auto refuse = [](const std::string& what) { throw InputError("upsampling: " + what); };
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) {
+    throw InputError("upsampling: " + what);
+}
+
+}  // namespace
+
+void check_upsampling(const Upsampling& upsampling) {
     const int factor = upsampling.factor;
     if (factor < 1 || factor > kGreatestFactor) {
         refuse(fmt::format("a factor of {}; it must be 1 to {}", factor, kGreatestFactor));
@@ -190,6 +196,11 @@ TerrainInfo upsampled(const TerrainInfo& info, const Upsampling& upsampling) {
         refuse(fmt::format("a fractal and a factor of {}; with a fractal it must be a power of two",
                            factor));
     }
+}
+
+TerrainInfo upsampled(const TerrainInfo& info, const Upsampling& upsampling) {
+    check_upsampling(upsampling);
+    const int factor = upsampling.factor;
     const auto size = [&](const char* what, int samples, const std::optional<int>& kept) {
         const std::int64_t whole = std::int64_t(samples - 1) * factor + 1;
         if (kept && (*kept < 2 || *kept > whole)) {

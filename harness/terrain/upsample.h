@@ -1,26 +1,21 @@
 #pragma once
 // Larger terrains from smaller ones.
 
-#include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 
 #include "terrain/terrain_rows.h"
 
 namespace lodbench::terrain {
 
-/// Samples of the result between two of the source, and what is added.
-struct Upsampling {
-    int factor = 2;                   ///< 1 to 64
-    double fractal_amplitude = 0;     ///< metres, >= 0; above 0 the factor is a power of two
-    std::uint64_t seed = 1;           ///< of the fractal
-    std::optional<int> rows = {};     ///< of the result, kept from the north; all if empty
-    std::optional<int> columns = {};  ///< kept from the west
-};
+inline constexpr int kGreatestFactor = 64;
+
+/// Throws InputError for a factor, an amplitude or a pair of them that Upsampling does not admit.
+void check_upsampling(const Upsampling& upsampling);
 
 /// What the result is: (rows - 1) * factor + 1 rows unless fewer are kept, columns likewise; the
-/// spacing divided by the factor. Throws InputError for a factor, amplitude or size out of range.
+/// spacing divided by the factor. Throws InputError as check_upsampling, and for a size out of
+/// range.
 [[nodiscard]] TerrainInfo upsampled(const TerrainInfo& info, const Upsampling& upsampling);
 
 /// Gives the rows of the result to `sink`, from the north.

@@ -9,6 +9,7 @@
 #include "api/error.h"
 #include "fuzz/refusal.h"
 #include "fuzz/seeds.h"
+#include "report/equal_error.h"
 #include "report/html/report.h"
 #include "report/table.h"
 
@@ -66,6 +67,9 @@ void show(const results::ResultFolder& results) {
     const auto rows = report::table_rows(results.cells, 1);
     (void)report::text_table(rows);  // made plain where it is printed
     (void)report::markdown_table(rows);
+    for (const report::EqualFlight& flight : report::equal_flights(results.run)) {
+        (void)report::equal_text(flight, results.cells, report::quality_knobs(results.run));
+    }
     const report::html::Report page = report::html::make_report({results});
     expect_plain_text(page.html, "page");
 }

@@ -11,6 +11,7 @@
 #include "gl/alive_objects.h"
 #include "gl/method_fixture.h"
 #include "gl/state.h"
+#include "scenario/camera_track.h"
 #include "scenario/scenario.h"
 #include "terrain/open_terrain.h"
 
@@ -77,20 +78,15 @@ void expect_equal_pictures(Flight& flight, const Camera& camera, std::ptrdiff_t 
     EXPECT_GE(reference.covered(), least_covered);
 }
 
-TEST(ReferencePicture, is_full_grids_to_the_bit_over_the_demo) {
-    const scenario::Scenario demo =
-        scenario::load_scenario(LODBENCH_SOURCE_DIR "/scenarios/demo.toml");
-    const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(demo.terrain);
-    const auto path = scenario::make_path(demo.path, demo.frames, demo.rate_hz, *terrain);
+TEST(ReferencePicture, is_full_grids_to_the_bit_over_the_embedded_terrain) {
+    const scenario::Scenario high =
+        scenario::load_scenario(LODBENCH_SOURCE_DIR "/scenarios/trade/high.toml");
+    const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(high.terrain);
+    const scenario::CameraTrack track(high, *terrain);
     Flight flight(terrain, "full_grid", "full-grid");
     for (const int frame : {0, 31, 60, 90, 99}) {
         SCOPED_TRACE(frame);
-        Camera camera;
-        camera.vertical_fov = demo.vertical_fov;
-        camera.viewport = demo.viewport;
-        camera.near_plane = demo.near_plane;
-        path->place(frame, camera);
-        expect_equal_pictures(flight, camera, 640 * 480 / 3);
+        expect_equal_pictures(flight, track.camera(frame), 640 * 480 / 3);
     }
     // All 256 blocks: four batches.
     expect_equal_pictures(flight, from_high_above(terrain->info()), 5000);

@@ -93,6 +93,7 @@ kind = "spline"
 frames = 30
 rate_hz = 25
 warmup_frames = 2
+warmup_flies = true
 speed = 12
 relative = true
 above_ground = true
@@ -140,6 +141,7 @@ order = "bfs"
     EXPECT_EQ(scenario.frames, 30);
     EXPECT_EQ(scenario.rate_hz, 25);
     EXPECT_EQ(scenario.warmup_frames, 2);
+    EXPECT_TRUE(scenario.warmup_flies);
     EXPECT_EQ(scenario.path.kind, PathKind::spline);
     EXPECT_TRUE(scenario.path.relative);
     EXPECT_TRUE(scenario.path.above_ground);
@@ -160,7 +162,7 @@ order = "bfs"
     EXPECT_EQ(scenario.memory_limit_bytes, 512ULL << 20U);
     ASSERT_EQ(scenario.methods.size(), 2U);
     EXPECT_EQ(scenario.methods[0].id, "pgm");
-    EXPECT_EQ(scenario.methods[0].where, "flights/least.toml:45");
+    EXPECT_EQ(scenario.methods[0].where, "flights/least.toml:46");
     const auto& settings = scenario.methods[1].settings;
     // In alphabetical order, as TOML tables are kept.
     EXPECT_THAT(settings, ElementsAre(Pair("order", ElementsAre("bfs")),
@@ -338,6 +340,8 @@ TEST(Scenario, recorded_flight_has_all_frames_of_its_file_unless_told) {
     };
     EXPECT_EQ(frames(""), 7);
     EXPECT_EQ(frames("frames = 3\n"), 3);
+    EXPECT_EQ(frames("warmup_flies = true\n"), 2) << "the first five are for warm-up";
+    EXPECT_THROW((void)frames("warmup_flies = true\nwarmup_frames = 7\n"), InputError);
     EXPECT_EQ(frames("[measure]\nshots = [6]\n"), 7);
     EXPECT_THROW((void)frames("[measure]\nshots = [7]\n"), InputError);
 }
@@ -383,10 +387,71 @@ TEST(Overrides, replace_what_they_name_and_are_checked) {
     EXPECT_THROW(apply({.repetitions = -1}, scenario), InputError);
 }
 
-TEST(Demo, is_a_scenario_over_the_embedded_terrain) {
+TEST(Scenario, upsampling_is_read_and_what_it_does_not_admit_is_refused) {
+    const auto upsampled = [](const std::string& keys) {
+        return "[terrain]\nsynthetic = 'ridged'\n[terrain.upsample]\n" + keys +
+               "[flight]\nkind = 'line'\nstart = [0, 0, 100]\nend = [100, 0, 100]\n";
+    };
+    EXPECT_FALSE(parse(kLeast).terrain.upsampling.has_value());
+    const auto upsampling =
+        parse(upsampled("factor = 8\nfractal = 2.5\nseed = 9\n")).terrain.upsampling;
+    ASSERT_TRUE(upsampling.has_value());
+    EXPECT_EQ(upsampling->factor, 8);
+    EXPECT_EQ(upsampling->fractal_amplitude, 2.5);
+    EXPECT_EQ(upsampling->seed, 9U);
+    EXPECT_THAT(refusal(upsampled("")), HasSubstr("least.toml:3: [terrain.upsample] factor"));
+    EXPECT_THAT(refusal(upsampled("factor = 1\n")), HasSubstr("factor = 1: out of range"));
+    EXPECT_THAT(refusal(upsampled("factor = 65\n")), HasSubstr("factor = 65: out of range"));
+    EXPECT_THAT(refusal(upsampled("factor = 3\nfractal = 1\n")),
+                StartsWith("flights/least.toml:3: upsampling: a fractal and a factor of 3"));
+    EXPECT_THAT(refusal(upsampled("factor = 2\nfractal = -1\n")),
+                HasSubstr("fractal = -1: out of range"));
+    EXPECT_THAT(refusal(upsampled("factor = 2\nrows = 9\n")), HasSubstr("\"rows\" is not a key"));
+}
+
+TEST(Scenario, kept_knob_values_are_read_and_each_mistake_is_told) {
+    const std::string kept = kLeast +
+                             "[equal]\nerror_px = 1.5\ntolerance = 0.1\n"
+                             "[equal.knobs]\nlindstrom = 0.75\npgm = 240\n"
+                             "[equal.off]\npgm = 'it is slow'\n";
+    const auto equal = parse(kept).equal;
+    ASSERT_TRUE(equal.has_value());
+    EXPECT_EQ(equal->error_px, 1.5);
+    EXPECT_EQ(equal->tolerance, 0.1);
+    ASSERT_EQ(equal->knobs.size(), 2U);
+    EXPECT_EQ(equal->knobs[0].method, "lindstrom");
+    EXPECT_EQ(equal->knobs[0].value, "0.75");
+    EXPECT_EQ(equal->knobs[0].where, "flights/least.toml:12");
+    EXPECT_EQ(equal->knobs[0].off, "");
+    EXPECT_EQ(equal->knobs[1].off, "it is slow");
+    EXPECT_FALSE(parse(kLeast).equal.has_value());
+    const std::pair<const char*, const char*> cases[] = {
+        {"[equal]\n[equal.knobs]\npgm = 1\n", "write the P99.9 of the pixel error"},
+        {"[equal]\nerror_px = 0\n", "error_px = 0: out of range"},
+        {"[equal]\nerror_px = 1\n", "write [equal.knobs] with METHOD = VALUE"},
+        {"[equal]\nerror_px = 1\n[equal.knobs]\nPgm = 1\n", "not the id of a method"},
+        {"[equal]\nerror_px = 1\n[equal.knobs]\npgm = [1, 2]\n", "pgm = [1, 2]: write the one value that shows the error"},
+        {"[equal]\nerror_px = 1\n[equal.knobs]\npgm = 1\n[equal.off]\nmoon = 'far'\n",
+         "[equal.off] \"moon\" is not a key of a scenario; known: pgm"},
+        {"[equal]\nerror_px = 1\n[equal.knobs]\npgm = 1\n[equal.off]\npgm = 3\n",
+         "pgm = 3: a whole number where text"},
+        {"[equal]\nerror_px = 1\nknob = 3\n[equal.knobs]\npgm = 1\n", "did you mean knobs?"},
+    };
+    for (const auto& [text, expected] : cases) {
+        const std::string message = refusal(kLeast + text);
+        EXPECT_THAT(message, StartsWith("flights/least.toml:")) << text;
+        EXPECT_THAT(message, HasSubstr(expected)) << text;
+    }
+}
+
+TEST(Demo, is_a_scenario_over_the_embedded_terrain_made_larger) {
     const Scenario scenario = load_scenario(kFolder / "demo.toml");
     EXPECT_EQ(scenario.name, "demo");
-    EXPECT_EQ(scenario.frames, 100);
     EXPECT_EQ(scenario.viewport, (Viewport{640, 480}));
     EXPECT_TRUE(std::filesystem::exists(scenario.terrain.file));
+    EXPECT_TRUE(scenario.terrain.upsampling.has_value());
+    EXPECT_TRUE(scenario.warmup_flies);
+    EXPECT_LE(scenario.path.speed, 300) << "an aircraft's";
+    ASSERT_TRUE(scenario.equal.has_value());
+    EXPECT_EQ(scenario.equal->error_px, 1);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "api/error.h"
+#include "terrain/open_terrain.h"
 #include "unit/tile_store_files.h"
 
 namespace lodbench::test {
@@ -149,6 +150,54 @@ TEST(Upsample, refuses_what_it_cannot_do) {
     EXPECT_EQ(refusal({.factor = 2, .rows = 18}), "upsampling: 18 rows of 17; keep 2 to 17");
     EXPECT_EQ(refusal({.factor = 2, .columns = 1}), "upsampling: 1 columns of 17; keep 2 to 17");
     EXPECT_NE(refusal({.factor = 2, .fractal_amplitude = NAN}), "");
+}
+
+TEST(Upsample, a_source_that_asks_for_it_is_loaded_larger_whatever_it_is_made_of) {
+    terrain::TerrainSource source;
+    source.synthetic = "ridged";
+    source.rows = 17;
+    source.columns = 33;
+    source.spacing_x = source.spacing_y = 20;
+    const Upsampling upsampling{.factor = 4, .fractal_amplitude = 3, .seed = 2};
+    const HeightField expected = upsampled(*terrain::load_terrain(source), upsampling);
+    source.upsampling = upsampling;
+    terrain::OpenTerrain opened = terrain::open_terrain_with_provenance(source);
+    EXPECT_EQ(opened.terrain->info().checksum, expected.info().checksum);
+    EXPECT_EQ(opened.terrain->info().columns, 129);
+    EXPECT_EQ(opened.terrain->info().spacing.x, 5);
+    EXPECT_EQ(opened.terrain->info().name, "ridged-x4");
+    EXPECT_EQ(opened.provenance.kind, "synthetic, upsampled by 4");
+
+    // The same samples from a store. What it stays on disk for is refused.
+    const TemporaryFolder folder;
+    terrain::TerrainSource stored;
+    stored.file = folder.path() / "a.tiles";
+    source.upsampling.reset();
+    terrain::write_store(*terrain::load_terrain(source), std::nullopt, stored.file);
+    stored.upsampling = upsampling;
+    EXPECT_EQ(terrain::open_terrain(stored)->info().checksum, expected.info().checksum);
+    stored.cold = true;
+    try {
+        (void)terrain::open_terrain(stored);
+        FAIL() << "it was cold";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(),
+                    testing::HasSubstr("cold is set, but what is upsampled lies in memory"));
+    }
+}
+
+TEST(Upsample, a_source_is_refused_with_its_place_before_memory_is_taken) {
+    terrain::TerrainSource source;
+    source.synthetic = "plane";
+    source.rows = source.columns = 1025;
+    source.where = "a.toml:2";
+    source.upsampling = Upsampling{.factor = 64};
+    try {
+        (void)terrain::load_terrain(source);
+        FAIL() << "275 GB were held";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::StartsWith("a.toml:2: terrain 'plane-x64'"));
+    }
 }
 
 }  // namespace

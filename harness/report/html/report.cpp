@@ -13,6 +13,7 @@ void add_set(Page& page, const ReportData& data, const ResultSet& set) {
     page.heading(2, set.title, set.id);
     page.raw(fmt::format("<section id=\"{}-plots\" aria-label=\"{}\">\n", escape(set.id),
                          escape(set.title)));
+    add_equal(page, set);
     add_summary(page, data, set);
     add_failures(page, set);
     add_legend(page, data, set);

@@ -10,6 +10,8 @@ namespace lodbench::report::html {
 void add_summary(Page& page, const ReportData& data, const ResultSet& set);
 void add_failures(Page& page, const ResultSet& set);
 void add_legend(Page& page, const ReportData& data, const ResultSet& set);
+/// Of a scenario that keeps the knob values of an equal error; else nothing.
+void add_equal(Page& page, const ResultSet& set);
 /// Of a folder that `match` wrote; else nothing.
 void add_match(Page& page, const ReportData& data, const ResultSet& set);
 void add_trade(Page& page, const ReportData& data, const ResultSet& set);

@@ -1,0 +1,239 @@
+#include "report/equal_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "measure/statistics.h"
+#include "report/aligned_table.h"
+#include "results/error_metric.h"
+#include "results/json.h"
+
+namespace lodbench::report {
+namespace {
+
+constexpr double kTie = 0.05;       // ratio of frame times: one flight says no more
+constexpr double kExactPx = 0.02;   // below it what is drawn is the terrain: rounding of float32
+constexpr double kKept = 1 + 1e-3;  // of a claimed bound: float32 positions and depths
+
+std::string text_of(const std::optional<double>& value, const char* format) {
+    return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+std::string px(double value) {
+    return fmt::format("{:.3g} px", value);
+}
+
+std::optional<std::string> knob_text(const results::CellGroup& group,
+                                     const std::map<std::string, std::string>& knobs) {
+    const auto knob = knobs.find(group.method);
+    if (knob == knobs.end()) return std::nullopt;
+    return fmt::format("{} = {}", knob->second,
+                       results::value_text(results::member_of(*group.good.front(), "params",
+                                                              knob->second.c_str())));
+}
+
+EqualRow row_of(const results::CellGroup& group, const EqualFlight& flight,
+                const std::map<std::string, std::string>& knobs) {
+    const auto middle = [&](const char* key, const char* inner) {
+        return measure::median(results::numbers_of(group.good, key, inner));
+    };
+    EqualRow row;
+    row.group = &group;
+    row.knob = knob_text(group, knobs);
+    row.frame_ms = middle("frame_ms", "median");
+    row.slowest_ms = middle("frame_ms", "max");
+    row.triangles = middle("triangles", "mean");
+    row.error = results::pixel_error(group, results::ErrorMetric::p999);
+    row.claimed = middle("claimed_px", nullptr);
+    row.honesty = middle("bound_honesty", nullptr);
+    if (row.error && flight.meets(*row.error)) {
+        row.place = EqualRow::Place::equal;
+    } else if (row.error && *row.error < kExactPx && !row.knob) {
+        row.place = EqualRow::Place::exact;
+    }
+    return row;
+}
+
+std::string table_of(const std::vector<EqualRow>& rows) {
+    std::vector<std::vector<std::string>> lines = {
+        {"method", "set to", "frame ms", "slowest ms", "triangles", "P99.9 px", "claims px"}};
+    for (const EqualRow& row : rows) {
+        lines.push_back(
+            {row.group->label, row.knob.value_or("-"), text_of(row.frame_ms, "{:.1f}"),
+             text_of(row.slowest_ms, "{:.1f}"), text_of(row.triangles, "{:.0f}"),
+             text_of(row.error, "{:.2f}") + (row.place == EqualRow::Place::off ? " (off)" : ""),
+             text_of(row.claimed, "{:.3g}") + (row.breaks_claim() ? " (!)" : "")});
+    }
+    return aligned_table(lines);
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+    if (words.size() < 2) return words.empty() ? "" : words.front();
+    return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
+}
+
+/// Who is fastest of those at the error, and against whom.
+std::string verdict(const EqualFlight& flight, const std::vector<EqualRow>& rows) {
+    std::vector<const EqualRow*> equal;
+    for (const EqualRow& row : rows) {
+        if (row.place == EqualRow::Place::equal && row.frame_ms) equal.push_back(&row);
+    }
+    const std::string promise = fmt::format(
+        "99.9 % of the pixels within {} of the true terrain, measured", px(flight.error_px));
+    if (equal.empty()) {
+        return fmt::format(
+            "No method shows the error that all were to show ({}), so their frame "
+            "times do not compare.",
+            promise);
+    }
+    std::vector<std::string> winners;
+    std::string others;
+    for (const EqualRow* row : equal) {
+        if (*row->frame_ms <= *equal.front()->frame_ms * (1 + kTie)) {
+            winners.push_back(row->group->label);
+        } else if (others.empty()) {
+            others =
+                fmt::format("; the next, {}, takes {:.1f} ms", row->group->label, *row->frame_ms);
+        }
+    }
+    std::string text = fmt::format(
+        "At equal error ({}) {} {} fastest: {:.1f} ms a frame (median){}", promise,
+        list_of(winners), winners.size() == 1 ? "is" : "are", *equal.front()->frame_ms, others);
+    for (const EqualRow& row : rows) {
+        if (row.place != EqualRow::Place::exact || !row.frame_ms) continue;
+        text += fmt::format("; {}, which draws every sample, {:.1f} ms", row.group->label,
+                            *row.frame_ms);
+    }
+    return text + ".";
+}
+
+/// Why each row that is off is so; those of one reason in one line.
+std::vector<std::string> off_lines(const EqualFlight& flight, const std::vector<EqualRow>& rows) {
+    std::vector<std::string> lines;
+    std::vector<std::string> unexplained;
+    for (const EqualRow& row : rows) {
+        if (row.place != EqualRow::Place::off) continue;
+        const std::string shown = fmt::format("{} shows {}", row.group->label,
+                                              row.error ? px(*row.error) : "no measured error");
+        const auto reason = flight.off.find(row.group->method);
+        if (!row.knob) {
+            lines.push_back(fmt::format("{} (off): it has no knob to set.", shown));
+        } else if (flight.as_kept && reason != flight.off.end()) {
+            lines.push_back(fmt::format("{} (off): {}.", shown, reason->second));
+        } else {
+            unexplained.push_back(shown);
+        }
+    }
+    if (unexplained.empty()) return lines;
+    lines.push_back(fmt::format(
+        "{} (off): {}.", list_of(unexplained),
+        flight.as_kept
+            ? "the kept value of the knob gives another error here, and `lodbench match` "
+              "finds it anew"
+            : "the kept values of the knobs are for the scenario as it is written, and "
+              "other frames, sizes or settings give other errors"));
+    return lines;
+}
+
+std::vector<std::string> claim_lines(const std::vector<EqualRow>& rows) {
+    std::vector<std::string> broken;
+    for (const EqualRow& row : rows) {
+        if (!row.breaks_claim()) continue;
+        broken.push_back(fmt::format("{} {:.2f} times", row.group->label, *row.honesty));
+    }
+    if (broken.empty()) return {};
+    return {
+        fmt::format("(!) somewhere the measured error is above the bound that the method "
+                    "claims: {}.",
+                    list_of(broken))};
+}
+
+}  // namespace
+
+bool EqualFlight::meets(double error) const {
+    return error >= error_px * (1 - tolerance) && error <= error_px * (1 + tolerance);
+}
+
+std::vector<EqualFlight> equal_flights(const Json::Value& run) {
+    std::vector<EqualFlight> flights;
+    const Json::Value& scenarios = results::member_of(run, "scenarios");
+    if (!scenarios.isArray()) return flights;
+    for (const Json::Value& scenario : scenarios) {
+        const Json::Value& error = results::member_of(scenario, "equal", "error_px");
+        const Json::Value& tolerance = results::member_of(scenario, "equal", "tolerance");
+        if (!error.isNumeric() || !tolerance.isNumeric() || !scenario["name"].isString()) continue;
+        EqualFlight& flight = flights.emplace_back();
+        flight.scenario = scenario["name"].asString();
+        flight.error_px = error.asDouble();
+        flight.tolerance = tolerance.asDouble();
+        flight.as_kept = results::member_of(scenario, "equal", "as_kept") == Json::Value(true);
+        const Json::Value& off = results::member_of(scenario, "equal", "off");
+        if (!off.isObject()) continue;
+        for (auto reason = off.begin(); reason != off.end(); ++reason) {
+            if (reason->isString()) flight.off[reason.name()] = reason->asString();
+        }
+    }
+    return flights;
+}
+
+std::map<std::string, std::string> quality_knobs(const Json::Value& run) {
+    std::map<std::string, std::string> knobs;
+    const Json::Value& plugins = results::member_of(run, "plugins");
+    if (!plugins.isArray()) return knobs;
+    for (const Json::Value& plugin : plugins) {
+        const Json::Value& methods = results::member_of(plugin, "methods");
+        if (!methods.isArray()) continue;
+        for (const Json::Value& method : methods) {
+            const Json::Value& knob = results::member_of(method, "quality_knob");
+            const Json::Value& id = results::member_of(method, "id");
+            if (knob.isString() && id.isString()) knobs.emplace(id.asString(), knob.asString());
+        }
+    }
+    return knobs;
+}
+
+bool EqualRow::breaks_claim() const {
+    return honesty && *honesty > kKept;
+}
+
+std::vector<EqualRow> equal_rows(const EqualFlight& flight,
+                                 const std::vector<results::CellGroup>& groups,
+                                 const std::map<std::string, std::string>& knobs) {
+    std::vector<EqualRow> rows;
+    for (const results::CellGroup& group : groups) {
+        if (group.scenario != flight.scenario || group.good.empty()) continue;
+        rows.push_back(row_of(group, flight, knobs));
+    }
+    std::ranges::stable_sort(rows, {}, [](const EqualRow& row) {
+        return std::tuple(row.place == EqualRow::Place::off,
+                          row.frame_ms.value_or(std::numeric_limits<double>::infinity()));
+    });
+    return rows;
+}
+
+std::vector<std::string> equal_words(const EqualFlight& flight, const std::vector<EqualRow>& rows) {
+    std::vector<std::string> lines = {verdict(flight, rows)};
+    for (const auto& more : {off_lines(flight, rows), claim_lines(rows)}) {
+        lines.insert(lines.end(), more.begin(), more.end());
+    }
+    return lines;
+}
+
+std::string equal_text(const EqualFlight& flight, const std::vector<Json::Value>& cells,
+                       const std::map<std::string, std::string>& knobs) {
+    const std::vector<results::CellGroup> groups = results::group_cells(cells);
+    const std::vector<EqualRow> rows = equal_rows(flight, groups, knobs);
+    const std::vector<std::string> words = equal_words(flight, rows);
+    std::string text = fmt::format(
+        "## {}: every method set to the same measured error, P99.9 = {} within {:.3g} "
+        "%\n\n{}\n{}\n",
+        flight.scenario, px(flight.error_px), 100 * flight.tolerance, table_of(rows),
+        words.front());
+    for (std::size_t i = 1; i < words.size(); ++i) text += "- " + words[i] + "\n";
+    return text;
+}
+
+}  // namespace lodbench::report

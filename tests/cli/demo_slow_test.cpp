@@ -1,0 +1,73 @@
+// What scenarios/demo.toml keeps is true: at the values of its knobs the methods show the error
+// that it promises, and what it says cannot, cannot.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "cli/run_lodbench.h"
+#include "results/error_metric.h"
+#include "scenario/scenario.h"
+
+namespace lodbench::test {
+namespace {
+
+using testing::HasSubstr;
+using Arguments = std::vector<std::string>;
+
+const fs::path kDemo = fs::path(LODBENCH_SOURCE_DIR) / "scenarios/demo.toml";
+
+class Demo : public testing::Test {
+protected:
+    /// P99.9 of the pixel error of each method, in pixels.
+    std::map<std::string, double> errors(const Arguments& more) {
+        const std::string out = (folder_.path() / "out").string();
+        Arguments arguments = {"run", "--out", out};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        finished_ = run_lodbench(arguments, folder_.path());
+        EXPECT_EQ(finished_.status, 0) << finished_.output;
+        std::map<std::string, double> errors;
+        for (const Json::Value& cell : cells_of(out)) {
+            const auto error = results::pixel_error(cell, results::ErrorMetric::p999);
+            EXPECT_TRUE(error.has_value()) << cell["cell"];
+            errors[cell["method"].asString()] = error.value_or(-1);
+        }
+        return errors;
+    }
+    ScratchFolder folder_;
+    Finished finished_;
+    const scenario::EqualError equal_ = scenario::load_scenario(kDemo).equal.value();
+};
+
+TEST_F(Demo, each_kept_value_shows_the_error_that_it_was_kept_for_and_every_method_has_one) {
+    const std::map<std::string, double> errors = this->errors({});
+    EXPECT_EQ(errors.size(), equal_.knobs.size() + 1) << "and full-grid, which has no knob";
+    EXPECT_LT(errors.at("full-grid"), 0.02);
+    for (const scenario::EqualError::Knob& knob : equal_.knobs) {
+        const double ratio = errors.at(knob.method) / equal_.error_px;
+        if (knob.off.empty()) {
+            EXPECT_NEAR(ratio, 1, equal_.tolerance) << knob.method;
+        } else {
+            EXPECT_GT(std::abs(ratio - 1), equal_.tolerance)
+                << knob.method << " is not off any more";
+            EXPECT_THAT(finished_.output, HasSubstr(knob.off));
+        }
+    }
+    EXPECT_THAT(
+        finished_.output,
+        HasSubstr("\n\nAt equal error (99.9 % of the pixels within 1 px of the true terrain, "
+                  "measured) "));
+}
+
+/// The values at the end of the knob's range, towards the error that cannot be reached.
+TEST_F(Demo, what_is_said_to_be_out_of_reach_is) {
+    const std::map<std::string, double> errors =
+        this->errors({"--frames", "1", "--method", "pgm", "--set", "pgm.grid=2048", "--method",
+                      "static-patches", "--set", "static-patches.tau=1000"});
+    EXPECT_GT(errors.at("pgm"), equal_.error_px * (1 + equal_.tolerance));
+    EXPECT_LT(errors.at("static-patches"), equal_.error_px * (1 - equal_.tolerance));
+}
+
+}  // namespace
+}  // namespace lodbench::test

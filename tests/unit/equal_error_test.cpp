@@ -1,0 +1,144 @@
+// The table of a flight at equal error, and what it says in words.
+
+#include "report/equal_error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "results/json.h"
+
+namespace lodbench::report {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A cell as cells.jsonl has it.
+Json::Value cell(const std::string& method, double frame_ms, double error_px, double honesty = 0) {
+    Json::Value json;
+    json["scenario"] = "alps";
+    json["method"] = method;
+    json["status"] = "ok";
+    json["repetition"] = 0;
+    json["params"] = Json::objectValue;
+    if (method != "whole") json["params"]["tau"] = 2.5;
+    json["frame_ms"]["median"] = frame_ms;
+    json["frame_ms"]["max"] = 2 * frame_ms;
+    json["triangles"]["mean"] = 1000.4;
+    json["pixel_error_px"]["p999"] = error_px;
+    if (honesty > 0) {
+        json["claimed_px"] = 2.5;
+        json["bound_honesty"] = honesty;
+    }
+    return json;
+}
+
+class EqualError : public testing::Test {
+protected:
+    std::string text(const std::vector<Json::Value>& cells) {
+        return equal_text(flight_, cells, {{"a", "tau"}, {"b", "tau"}, {"c", "tau"}});
+    }
+    /// The first line below the table.
+    std::string verdict(const std::vector<Json::Value>& cells) {
+        const std::string all = text(cells);
+        const std::size_t begin = all.find("|\n\n") + 3;
+        return all.substr(begin, all.find('\n', begin) - begin);
+    }
+    EqualFlight flight_{
+        .scenario = "alps", .error_px = 2, .tolerance = 0.1, .as_kept = true, .off = {}};
+};
+
+TEST_F(EqualError, the_first_line_says_who_is_fastest_at_which_error_and_against_whom) {
+    EXPECT_EQ(
+        verdict({cell("a", 30, 2.1), cell("b", 20, 1.9), cell("whole", 400, 0), cell("c", 5, 3)}),
+        "At equal error (99.9 % of the pixels within 2 px of the true terrain, measured) b is "
+        "fastest: "
+        "20.0 ms a frame (median); the next, a, takes 30.0 ms; whole, which draws every sample, "
+        "400.0 ms.");
+}
+
+TEST_F(EqualError, times_that_one_flight_cannot_tell_apart_win_together) {
+    EXPECT_THAT(verdict({cell("a", 20.9, 2), cell("b", 20, 2)}),
+                HasSubstr(") b and a are fastest: 20.0 ms"));
+    EXPECT_THAT(verdict({cell("a", 21.1, 2), cell("b", 20, 2)}),
+                HasSubstr(") b is fastest: 20.0 ms"));
+}
+
+TEST_F(EqualError, rows_stand_by_rising_time_those_at_another_error_last_and_marked) {
+    const std::string all = text({cell("a", 30, 2), cell("b", 20, 2), cell("c", 5, 3)});
+    EXPECT_LT(all.find("| b "), all.find("| a "));
+    EXPECT_LT(all.find("| a "), all.find("| c "));
+    EXPECT_THAT(
+        all,
+        AllOf(HasSubstr(
+                  "## alps: every method set to the same measured error, P99.9 = 2 px within 10 %"),
+              HasSubstr("| 3.00 (off) |"), HasSubstr("| tau = 2.5 |"), HasSubstr("|      1000 |"),
+              HasSubstr("|       60.0 |")));
+}
+
+TEST_F(EqualError, what_is_off_is_said_with_the_reason_that_is_known) {
+    const std::vector<Json::Value> cells = {cell("a", 30, 2), cell("c", 5, 3)};
+    EXPECT_THAT(
+        text(cells),
+        HasSubstr("- c shows 3 px (off): the kept value of the knob gives another error here"));
+    flight_.off["c"] = "its grid ends there";
+    EXPECT_THAT(text(cells), HasSubstr("- c shows 3 px (off): its grid ends there.\n"));
+    flight_.as_kept = false;
+    EXPECT_THAT(text(cells),
+                AllOf(HasSubstr("- c shows 3 px (off): the kept values of the knobs are for"),
+                      Not(HasSubstr("grid"))));
+    EXPECT_THAT(text({cell("a", 30, 2), cell("other", 5, 3)}),
+                HasSubstr("- other shows 3 px (off): it has no knob to set."));
+}
+
+TEST_F(EqualError, nobody_wins_where_nobody_shows_the_error) {
+    EXPECT_EQ(verdict({cell("a", 30, 1), cell("whole", 400, 0)}),
+              "No method shows the error that all were to show (99.9 % of the pixels within 2 px "
+              "of the true "
+              "terrain, measured), so their frame times do not compare.");
+}
+
+TEST_F(EqualError, an_error_above_a_claimed_bound_is_marked_and_said) {
+    const std::string all =
+        text({cell("a", 30, 2, 1.5), cell("b", 20, 2, 1.0005), cell("c", 40, 2)});
+    EXPECT_THAT(all, AllOf(HasSubstr("|   2.5 (!) |"), HasSubstr("|       2.5 |")));
+    EXPECT_THAT(
+        all,
+        HasSubstr(
+            "- (!) somewhere the measured error is above the bound that the method claims: a 1.50 "
+            "times.\n"));
+    EXPECT_THAT(text({cell("b", 20, 2, 0.9)}), Not(HasSubstr("(!)")));
+}
+
+TEST_F(EqualError, an_error_that_was_not_measured_or_is_infinite_is_off) {
+    Json::Value none = cell("a", 30, 2);
+    none["pixel_error_px"] = Json::Value::null;
+    EXPECT_THAT(text({none}), HasSubstr("- a shows no measured error (off)"));
+    Json::Value infinite = cell("a", 30, 2);
+    infinite["pixel_error_px"]["p999"] = "inf";
+    EXPECT_THAT(text({infinite}), HasSubstr("- a shows inf px (off)"));
+}
+
+TEST(EqualFlights, are_read_from_run_json_and_what_is_malformed_is_left_out) {
+    const Json::Value run = results::parse_json(R"({
+        "scenarios": [{"name": "one"},
+                      {"name": "two", "equal": {"error_px": 1.5, "tolerance": 0.05, "as_kept": true,
+                                                "off": {"pgm": "slow", "bad": 3}}},
+                      {"name": "three", "equal": {"error_px": "x"}}, {"name": "four", "equal": 3}, 7],
+        "plugins": [{"methods": [{"id": "pgm", "quality_knob": "grid"}, {"id": "full", "quality_knob": null}]},
+                    {"methods": 3}, 4]})",
+                                                "run.json");
+    const auto flights = equal_flights(run);
+    ASSERT_EQ(flights.size(), 1U);
+    EXPECT_EQ(flights[0].scenario, "two");
+    EXPECT_EQ(flights[0].error_px, 1.5);
+    EXPECT_TRUE(flights[0].as_kept);
+    EXPECT_THAT(flights[0].off, testing::ElementsAre(testing::Pair("pgm", "slow")));
+    EXPECT_THAT(quality_knobs(run), testing::ElementsAre(testing::Pair("pgm", "grid")));
+    EXPECT_TRUE(equal_flights(Json::Value(3)).empty());
+    EXPECT_TRUE(quality_knobs(Json::Value::null).empty());
+}
+
+}  // namespace
+}  // namespace lodbench::report
