@@ -12,7 +12,10 @@
 
 #include "api/camera.h"
 #include "run/settings.h"
-#include "terrain/height_field.h"
+
+namespace lodbench::terrain {
+class HeightField;
+}
 
 namespace lodbench::conformance {
 
