@@ -68,7 +68,8 @@ std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uin
                      group.label,
                      {},
                      results::failures_of(group),
-                     results::disagreements_of(group)};
+                     results::disagreements_of(group),
+                     results::noise_of(group)};
         const auto& good = group.good;
         row.fields = {
             fps_text(good, seed),
@@ -109,6 +110,7 @@ std::string text_table(const std::vector<TableRow>& rows) {
     std::string text;
     std::string failures;
     std::string warnings;
+    std::string noise;
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const TableRow& row = rows[r];
         if (r == 0 || row.scenario != rows[r - 1].scenario) {
@@ -122,8 +124,12 @@ std::string text_table(const std::vector<TableRow>& rows) {
         for (const std::string& warning : row.warnings) {
             warnings += fmt::format("  {}, {}: {}\n", row.label, row.scenario, warning);
         }
+        for (const std::string& words : row.noise) {
+            noise += fmt::format("  {}, {}, {}\n", row.label, row.scenario, words);
+        }
     }
     if (!warnings.empty()) text += "\nWarnings\n" + warnings;
+    if (!noise.empty()) text += "\nNoise\n" + noise;
     if (!failures.empty()) text += "\nNot measured\n" + failures;
     return text;
 }
@@ -154,6 +160,7 @@ std::string markdown_table(const std::vector<TableRow>& rows) {
     std::string text;
     Fold warnings{"Warnings"};
     Fold failures{"Not measured"};
+    std::string noise;  // not folded: it is about the figures above
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const TableRow& row = rows[r];
         if (r == 0 || row.scenario != rows[r - 1].scenario) {
@@ -166,7 +173,12 @@ std::string markdown_table(const std::vector<TableRow>& rows) {
             fmt::format("| {} | {} |\n", markdown_text(row.label), fmt::join(row.fields, " | "));
         for (const std::string& warning : row.warnings) warnings.add(row, warning);
         for (const std::string& failure : row.failures) failures.add(row, failure);
+        for (const std::string& words : row.noise) {
+            noise += fmt::format("- Noise: {}, {}, {}\n", markdown_text(row.label),
+                                 markdown_text(row.scenario), markdown_text(words));
+        }
     }
+    if (!noise.empty()) text += "\n" + noise;
     return text + warnings.text() + failures.text();
 }
 

@@ -39,6 +39,7 @@ std::string write_spec(const CellSpec& spec) {
     json["seed"] = Json::UInt64(spec.seed);
     json["device"] = spec.device;
     json["out"] = spec.out.string();
+    if (spec.wait_for_debugger) json["wait_for_debugger"] = true;
     return results::exact_text(json);
 }
 
@@ -72,6 +73,7 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         spec.seed = json["seed"].asUInt64();
         spec.device = results::get_string(json, "device", where);
         spec.out = results::get_string(json, "out", where);
+        spec.wait_for_debugger = json["wait_for_debugger"].asBool();
         return spec;
     } catch (const Json::Exception& error) {
         throw InputError(fmt::format("{}: {}", where, error.what()));

@@ -24,7 +24,10 @@ struct RunRequest {
     scenario::Overrides overrides;
     std::string device;
     std::string command_line;
+    std::optional<double> load_average;  ///< when the command began: before its own load
     bool resume = false;
+    /// Each cell waits for a debugger, and no time limit ends it.
+    bool wait_for_debugger = false;
 
     /// Whether anything in it says which cells are meant.
     [[nodiscard]] bool names_cells() const;
