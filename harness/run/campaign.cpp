@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "api/error.h"
 #include "base/files.h"
@@ -129,7 +130,6 @@ public:
         }
         outcome_.seed = plan_.seed;
         for (const std::string& warning : outcome_.warnings) observer_.warned(warning);
-        note_noise();
     }
 
     CampaignOutcome fly() {
@@ -372,6 +372,7 @@ private:
             run_["gl"] = gl_context(result);
             write_run();
         }
+        note_noise();
         observer_.cell_finished(cell, index, plan_.cells.size(), record);
     }
 
@@ -384,12 +385,17 @@ private:
         observer_.warned(warning);
     }
 
-    /// As the machine is now: a run that is taken up may meet another load than when it began.
+    /// When there are figures that it is about. A run that is taken up may meet another load than
+    /// when it began.
     void note_noise() {
+        if (std::exchange(noise_is_noted_, true)) return;
         Json::Value machine = machine_context();
         machine["load_average"] = results::number(request_.load_average);
         for (const std::string& words : noise_of(machine)) {
-            run_["noise"].append(words);
+            const Json::Value& told = run_["noise"];
+            if (std::find(told.begin(), told.end(), words) == told.end()) {
+                run_["noise"].append(words);
+            }
             observer_.noisy(words);
         }
         write_run();
@@ -425,6 +431,7 @@ private:
     Plan plan_;
     Json::Value run_;
     std::set<std::string> finished_;
+    bool noise_is_noted_ = false;
     CampaignOutcome outcome_;
 };
 
