@@ -125,6 +125,26 @@ struct MethodDescriptor {
     void (*destroy)(Method* method) noexcept;
 };
 
+// How the compiler was called, of what decides about times: "optimised", "not optimised,
+// assertions".
+#ifdef __OPTIMIZE__
+#define LODBENCH_COMPILED_OPTIMISED "optimised"
+#else
+#define LODBENCH_COMPILED_OPTIMISED "not optimised"
+#endif
+#ifdef NDEBUG
+#define LODBENCH_COMPILED_ASSERTIONS ""
+#else
+#define LODBENCH_COMPILED_ASSERTIONS ", assertions"
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LODBENCH_COMPILED_SANITISERS ", sanitisers"
+#else
+#define LODBENCH_COMPILED_SANITISERS ""
+#endif
+#define LODBENCH_COMPILED \
+    LODBENCH_COMPILED_OPTIMISED LODBENCH_COMPILED_ASSERTIONS LODBENCH_COMPILED_SANITISERS
+
 /// The exported constant. `abi`, `struct_size` and `abi_tag` come first in every version.
 struct PluginDescriptor {
     std::uint32_t abi;
@@ -133,6 +153,7 @@ struct PluginDescriptor {
     const MethodDescriptor* methods;
     std::size_t method_count;
     std::size_t method_stride;  ///< sizeof(MethodDescriptor)
+    const char* compiled;       ///< LODBENCH_COMPILED where the descriptor stands
 };
 
 inline constexpr std::uint32_t kAbi = 1;
@@ -168,4 +189,4 @@ inline void destroy_method(Method* method) noexcept {
     extern "C" __attribute__((                                                                \
         visibility("default"))) constexpr lodbench::PluginDescriptor lodbench_plugin = {      \
         lodbench::kAbi,      sizeof(lodbench::PluginDescriptor), lodbench::kAbiTag, methods_, \
-        std::size(methods_), sizeof(lodbench::MethodDescriptor)}
+        std::size(methods_), sizeof(lodbench::MethodDescriptor), LODBENCH_COMPILED}

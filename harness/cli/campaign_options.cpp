@@ -15,6 +15,7 @@
 #include "base/interrupts.h"
 #include "cli/options.h"
 #include "report/summary.h"
+#include "run/context.h"
 #include "run/exit_status.h"
 #include "run/supervisor.h"
 
@@ -106,6 +107,7 @@ void CampaignOptions::require_folder_to_resume() const {
 
 void CampaignOptions::finish() {
     if (*seed_option_) request.overrides.seed = seed_;
+    request.load_average = run::load_average();
     request.command_line = fmt::format("{}", fmt::join(command_words(), " "));
     if (request.out.empty()) request.out = made_ = make_default_out();
 }
@@ -136,18 +138,29 @@ Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Progress::warned(const std::string& warning) {
     if (!told_.insert(warning).second) return;  // each campaign of a command says it anew
-    if (terminal_) base::write_error(kClearLine);
-    base::tell("warning: {}", warning);
+    line("warning: " + warning);
+}
+
+void Progress::noisy(const std::string& words) {
+    if (told_.insert(words).second) line("noise: " + words);
 }
 
 void Progress::cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                              double fraction) {
+    redraw(fmt::format("[{}/{}] {} {:.0f} %{}", index + 1, count, cell.spec.id, 100 * fraction,
+                       time_left(count - index, fraction)));
+}
+
+void Progress::redraw(const std::string& text) {
     const auto now = Clock::now();
     if (!terminal_ || now - drawn_ < std::chrono::milliseconds(200)) return;
     drawn_ = now;
-    base::write_error(kClearLine + fmt::format("[{}/{}] {} {:.0f} %{}", index + 1, count,
-                                               cell.spec.id, 100 * fraction,
-                                               time_left(count - index, fraction)));
+    base::write_error(kClearLine + base::plain(text));
+}
+
+void Progress::line(const std::string& text) const {
+    if (terminal_) base::write_error(kClearLine);
+    base::tell("{}", text);
 }
 
 void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
@@ -160,9 +173,8 @@ void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, st
     } else if (record["reason"].isString()) {
         words += ": " + record["reason"].asString();
     }
-    if (terminal_) base::write_error(kClearLine);
-    base::tell("[{}/{}] {} {}{}", index + 1, count, cell.spec.id, words,
-               time_left(count - index - 1, 0));
+    line(fmt::format("[{}/{}] {} {}{}", index + 1, count, cell.spec.id, words,
+                     time_left(count - index - 1, 0)));
 }
 
 std::string Progress::summary(const run::CampaignOutcome& outcome, const Json::Value& run) {
@@ -174,8 +186,12 @@ std::string Progress::time_left(std::size_t cells, double fraction) const {
     const double done = double(finished_) + fraction;
     if (finished_ == 0 || cells == 0) return {};
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-    const auto seconds = std::int64_t(std::ceil(elapsed / done * (double(cells) - fraction)));
-    return fmt::format(", {}:{:02} left", seconds / 60, seconds % 60);
+    return fmt::format(", {} left", minutes_text(elapsed / done * (double(cells) - fraction)));
+}
+
+std::string minutes_text(double seconds) {
+    const auto whole = std::int64_t(std::ceil(seconds));
+    return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
 std::string results_lines(const std::filesystem::path& out) {

@@ -52,23 +52,31 @@ class Progress final : public run::CampaignObserver {
 public:
     Progress();
     void warned(const std::string& warning) override;
+    void noisy(const std::string& words) override;
     void cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        double fraction) override;
     void cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        const Json::Value& record) override;
     [[nodiscard]] std::string summary(const run::CampaignOutcome& outcome,
                                       const Json::Value& run) override;
+    /// A line in the place of the one that was redrawn last.
+    void line(const std::string& text) const;
+    /// Redraws the line, some times a second at most; nothing where there is no terminal.
+    void redraw(const std::string& text);
 
 private:
     using Clock = std::chrono::steady_clock;
     [[nodiscard]] std::string time_left(std::size_t cells, double fraction) const;
 
     const bool terminal_;
-    std::set<std::string> told_;  ///< warnings
+    std::set<std::string> told_;  ///< warnings and noise
     const Clock::time_point start_ = Clock::now();
     Clock::time_point drawn_;
     std::size_t finished_ = 0;
 };
+
+/// "1:05", rounded up to whole seconds.
+[[nodiscard]] std::string minutes_text(double seconds);
 
 /// The last lines of a comparison: where its results are, and the command that draws them.
 [[nodiscard]] std::string results_lines(const std::filesystem::path& out);

@@ -24,7 +24,8 @@ struct Options {
 void print(const run::MethodInfo& method) {
     base::print("{}: {}\n", method.id, method.title);
     if (!method.citation.empty()) base::print("paper      {}\n", method.citation);
-    base::print("version    {}\nplugin     {}\n", method.version, method.plugin.string());
+    base::print("version    {}\nplugin     {}, compiled {}\n", method.version,
+                method.plugin.string(), method.compiled);
     base::print("quality    {}\n",
                 method.quality_knob.empty() ? "exact: no knob" : method.quality_knob);
     base::print("claims     {}\n",

@@ -51,6 +51,7 @@ int list_methods(const Options& options) {
     Json::Value object;
     object["methods"] = Json::arrayValue;
     object["refused"] = Json::arrayValue;
+    object["left_out"] = Json::arrayValue;
     for (const run::PluginListing& plugin : plugins) {
         if (!plugin.refusal.empty()) {
             base::tell("warning: {}", plugin.refusal);
@@ -58,6 +59,10 @@ int list_methods(const Options& options) {
             refused["path"] = plugin.path.string();
             refused["refusal"] = plugin.refusal;
             object["refused"].append(refused);
+        }
+        for (const std::string& words : plugin.left_out) {
+            base::tell("warning: {}", words);
+            object["left_out"].append(words);
         }
         for (const run::MethodInfo& method : plugin.methods) {
             object["methods"].append(method_json(method));

@@ -14,6 +14,7 @@
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
 #include "cli/trade_options.h"
+#include "measure/statistics.h"
 #include "report/aligned_table.h"
 #include "results/json.h"
 #include "run/locations.h"
@@ -61,6 +62,35 @@ std::string number_text(const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : "-";
 }
 
+/// ", at most 1:23 of searching left"; nothing where none can be left.
+std::string most_left(const run::SearchPlace& place) {
+    if (!place.most_left_s) return {};
+    return fmt::format(", at most {} of searching left", minutes_text(*place.most_left_s));
+}
+
+/// A probe is a line when it is measured; on a terminal one is redrawn while it flies.
+class SearchProgress final : public run::SearchObserver {
+public:
+    explicit SearchProgress(Progress& progress) : progress_(progress) {}
+    void flying(const run::SearchPlace& place) override {
+        progress_.redraw(fmt::format("{} {:.0f} %{}", place_text(place), 100 * place.fraction,
+                                     most_left(place)));
+    }
+    void probed(const run::SearchPlace& place, const run::MatchedMethod& method,
+                const run::Probe& probe, const std::string& failure) override {
+        progress_.line(fmt::format(
+            "{} {} = {:.6g} gives {}{}", place_text(place), method.knob->name, probe.knob,
+            failure.empty() ? number_text(probe.value) : failure, most_left(place)));
+    }
+
+private:
+    static std::string place_text(const run::SearchPlace& place) {
+        return fmt::format("[{}/{}] {}: probe {} of at most {}:", place.method_number,
+                           place.method_count, place.method, place.probe, place.most_probes);
+    }
+    Progress& progress_;
+};
+
 /// What the outcomes that are no "met" mean, of those that occur.
 std::string outcome_remarks(const std::vector<run::MatchedMethod>& methods) {
     constexpr std::pair<run::SearchOutcome, const char*> kMeanings[] = {
@@ -81,19 +111,40 @@ std::string outcome_remarks(const std::vector<run::MatchedMethod>& methods) {
     return remarks;
 }
 
-/// What was found, a line a method.
-std::string search_text(const std::vector<run::MatchedMethod>& methods) {
+/// What the final flights of a method measured: the median over its repetitions.
+std::optional<double> flown(const results::MatchTarget& target, const std::string& method,
+                            const std::vector<Json::Value>& cells) {
+    std::vector<double> values;
+    for (const Json::Value& cell : cells) {
+        if (cell["method"] != method) continue;
+        if (const auto value = target.measured(cell)) values.push_back(*value);
+    }
+    return measure::median(values);
+}
+
+/// What was found and what was flown there, a line a method.
+std::string search_text(const results::MatchTarget& target,
+                        const std::vector<run::MatchedMethod>& methods,
+                        const std::vector<Json::Value>& cells) {
     std::vector<std::vector<std::string>> lines = {
-        {"method", "knob", "achieved", "outcome", "probes"}};
+        {"method", "knob", "achieved", "flown", "outcome", "probes"}};
     std::string remarks = outcome_remarks(methods);
     for (const run::MatchedMethod& method : methods) {
         const auto& best = method.search.best;
+        const std::optional<double> measured = flown(target, method.method, cells);
         const std::string knob = !method.knob ? "exact: none"
                                  : best ? fmt::format("{} = {:.6g}", method.knob->name, best->knob)
                                         : method.knob->name;
         lines.push_back({method.method, knob, number_text(best ? best->value : std::nullopt),
-                         method.knob ? name_of(method.search.outcome) : "-",
+                         number_text(measured), method.knob ? name_of(method.search.outcome) : "-",
                          fmt::format("{}", method.search.probes.size())});
+        const bool met = method.knob && method.search.outcome == run::SearchOutcome::met;
+        if (met && measured && !target.meets(*measured)) {
+            remarks += fmt::format(
+                "- {}: met in the search, and the final flights give {:.6g}, beyond the tolerance: "
+                "it differs from flight to flight; widen --tolerance or give more --repeat\n",
+                method.method, *measured);
+        }
         if (!method.search.monotone) {
             remarks += fmt::format(
                 "- {}: what was measured neither rises nor falls throughout with "
@@ -113,12 +164,9 @@ int match(Options& options) {
     options.require_folder_to_resume();
     options.finish();
     Progress progress;
-    const run::MatchOutcome outcome = run::match(
-        options.request, target, options.most_probes, run::executable_path(), progress,
-        [](const run::MatchedMethod& method, const run::Probe& probe, const std::string& failure) {
-            base::tell("{}: {} = {:.6g} gives {}", method.method, method.knob->name, probe.knob,
-                       failure.empty() ? number_text(probe.value) : failure);
-        });
+    SearchProgress search(progress);
+    const run::MatchOutcome outcome = run::match(options.request, target, options.most_probes,
+                                                 run::executable_path(), progress, search);
     std::map<std::string, std::string> knobs;
     for (const run::MatchedMethod& method : outcome.methods) {
         if (method.knob) knobs[method.method] = method.knob->name;
@@ -127,7 +175,8 @@ int match(Options& options) {
         report::trade_rows(outcome.campaign.cells, knobs, target.metric, outcome.campaign.seed);
     const std::string text =
         fmt::format("{}, within {:.3g} %\n\n{}\n{}", target.words(), 100 * target.tolerance,
-                    search_text(outcome.methods), report::trade_text(rows, target.metric));
+                    search_text(target, outcome.methods, outcome.campaign.cells),
+                    report::trade_text(rows, target.metric));
     base::write_whole(outcome.campaign.out / "match.md", "# lodbench match\n\n" + text);
     if (options.json) {
         Json::Value object = to_json(outcome.campaign);

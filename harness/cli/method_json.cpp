@@ -45,6 +45,7 @@ Json::Value method_json(const run::MethodInfo& method) {
     json["citation"] = method.citation;
     json["version"] = method.version;
     json["plugin"] = method.plugin.string();
+    json["compiled"] = method.compiled;
     json["quality_knob"] = text_or_null(method.quality_knob);
     json["claimed_bound"] = text_or_null(method.claimed_bound);
     json["asynchronous"] = (method.capabilities & kAsynchronous) != 0;

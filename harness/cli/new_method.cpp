@@ -72,7 +72,7 @@ MethodName parse_name(const std::string& id) {
     return name;
 }
 
-/// Two plugins with one id are both refused: better now than when the second is built.
+/// Of two plugins with one id one is not used: better told now than when the second is built.
 void refuse_id_in_use(const std::string& id) {
     for (const run::PluginListing& plugin : find_plugins({})) {
         for (const run::MethodInfo& method : plugin.methods) {

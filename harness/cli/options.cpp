@@ -30,7 +30,9 @@ Viewport parse_size(const std::string& text) {
 }  // namespace
 
 void add_plugin_dirs(CLI::App& command, std::vector<std::filesystem::path>& folders) {
-    add_repeated(command, "--plugin-dir", folders, "folder to search for plugins first");
+    add_repeated(command, "--plugin-dir", folders,
+                 "folder to search for plugins first: its methods are used before those of the "
+                 "same id elsewhere");
 }
 
 void add_device(CLI::App& command, std::string& device) {

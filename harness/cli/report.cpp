@@ -11,6 +11,7 @@
 #include "base/console.h"
 #include "base/files.h"
 #include "cli/commands.h"
+#include "report/html/figure.h"
 #include "report/html/report.h"
 
 namespace lodbench::cli {
@@ -23,6 +24,7 @@ struct ReportOptions {
     std::vector<fs::path> folders;
     fs::path out;
     fs::path csv;
+    std::string figure;
 };
 
 std::vector<results::ResultFolder> read_folders(const std::vector<fs::path>& paths) {
@@ -55,7 +57,31 @@ void write_csv(const fs::path& folder, const std::map<std::string, std::string>&
     for (const auto& [name, csv] : tables) base::write_whole(folder / (name + ".csv"), csv);
 }
 
+/// NAME.svg, or as --out says. Throws InputError for another format.
+fs::path figure_file(const ReportOptions& options) {
+    const fs::path out = options.out.empty() ? fs::path(options.figure + ".svg") : options.out;
+    if (out.extension() == ".svg") return out;
+    const fs::path svg = fs::path(out).replace_extension(".svg");
+    const std::string convert =
+        out.extension() == ".pdf"
+            ? fmt::format(
+                  ", then convert it: rsvg-convert -f pdf -o {} {} (of Debian's "
+                  "librsvg2-bin)",
+                  out.string(), svg.string())
+            : "";
+    throw InputError(fmt::format("--out {}: a figure is an SVG; give --out {}{}", out.string(),
+                                 svg.string(), convert));
+}
+
+void write_figure(const ReportOptions& options) {
+    const fs::path out = figure_file(options);
+    const report::html::Report page = report::html::make_report(read_folders(options.folders));
+    base::write_whole(out, figure_svg(find_plot(page.plots, options.figure)));
+    base::print("figure    {}\n", fs::absolute(out).lexically_normal().string());
+}
+
 void write(const ReportOptions& options) {
+    if (!options.figure.empty()) return write_figure(options);
     const report::html::Report page = report::html::make_report(read_folders(options.folders));
     const fs::path out =
         options.out.empty() ? options.folders.front() / "report.html" : options.out;
@@ -78,8 +104,13 @@ void add_report(CLI::App& app, int& /*status*/) {
                      "results folders, as `lodbench run --out` writes them")
         ->required();
     command->add_option("--out,-o", options->out,
-                        "the page; default report.html in the first folder");
-    command->add_option("--csv", options->csv, "folder to write every table to as CSV");
+                        "the page, or the figure; default report.html in the first folder");
+    auto* csv = command->add_option("--csv", options->csv, "folder to write every table to as CSV");
+    auto* figure = command->add_option(
+        "--figure", options->figure,
+        "one plot alone as an SVG, for a paper: its id on the page, as trade-time; "
+        "an unknown name lists them; --out names the file, default NAME.svg");
+    figure->excludes(csv);
     command->callback([options] { write(*options); });
 }
 

@@ -82,6 +82,9 @@ void add_run(CLI::App& app, int& status) {
     options->add_to(*command);
     command->add_flag("--no-truth", options->no_truth,
                       "only times and counts: leaves out screen error, cracks and popping");
+    command->add_flag("--wait-for-debugger", options->request.wait_for_debugger,
+                      "each cell says its process and waits until a debugger is attached; no time "
+                      "limit ends it");
     options->add_resume(*command, "finish what is missing in --out, as the run began");
     command->callback(
         [options, &status] { status = options->interruptibly([&] { return fly(*options); }); });

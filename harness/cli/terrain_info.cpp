@@ -7,9 +7,9 @@
 #include "base/console.h"
 #include "cli/terrain_options.h"
 #include "results/json.h"
-#include "run/flight_check.h"
 #include "terrain/open_terrain.h"
 #include "terrain/tile_store.h"
+#include "terrain/void_fill.h"
 
 namespace lodbench::cli {
 namespace {
@@ -92,12 +92,8 @@ void run(const TerrainOptions& options, const CLI::App& command) {
 std::vector<std::string> warnings_of(const TerrainInfo& info,
                                      const terrain::Provenance& provenance) {
     std::vector<std::string> warnings = provenance.warnings;
-    const double share = double(info.void_count) / (double(info.rows) * info.columns);
-    if (share >= run::FlightCheck::kManyVoids) {
-        warnings.push_back(fmt::format(
-            "terrain '{}': {:.3g} % of its samples ({}) had no data and were filled from their "
-            "neighbours: what is measured there is no terrain",
-            info.name, 100 * share, info.void_count));
+    if (std::string voids = terrain::warning_of_voids(info); !voids.empty()) {
+        warnings.push_back(std::move(voids));
     }
     return warnings;
 }

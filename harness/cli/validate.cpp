@@ -149,11 +149,9 @@ int run_validate(const ValidateOptions& options) {
         const run::Settings settings = settings_of(all_settings, method.id);
         static_cast<void>(run::make_params(method, settings, "--set"));
         std::string hung;  // a call that does not come back costs one limit, not one a test
+        const conformance::Subject subject{
+            .method = method, .settings = settings, .device = options.device, .seed = options.seed};
         for (const conformance::Check& check : checks) {
-            const conformance::Subject subject{.method = method,
-                                               .settings = settings,
-                                               .device = options.device,
-                                               .seed = options.seed};
             conformance::CheckReport report =
                 hung.empty() ? conformance::run_check(check, subject, limit_of(options, check))
                              : not_run(check, hung);

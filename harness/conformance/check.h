@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "conformance/quality.h"
 #include "run/plugin_library.h"
 #include "run/vital_signs.h"
 
@@ -23,6 +25,9 @@ struct Subject {
     std::uint64_t seed = 1;
     /// Where each call of the method is told; shared with whoever watches.
     std::shared_ptr<run::VitalSigns> signs = std::make_shared<run::VitalSigns>();
+    /// Found by the first check that asks for them, and used by those after it.
+    std::shared_ptr<std::optional<Qualities>> qualities =
+        std::make_shared<std::optional<Qualities>>();
 };
 
 /// The method does not keep its promise: what was seen, with frame or camera, and what was

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "conformance/quality.h"
+#include "conformance/session.h"
 #include "measure/drawn_surface.h"
 #include "measure/sample_errors.h"
 
@@ -63,9 +63,9 @@ void finest_is_the_terrain(const Subject& subject) {
     // A bound below a pixel is another promise (claimed-bound-holds). Who claims none may miss a
     // peak, but not the terrain.
     constexpr double kGreatestPx = 1, kRootMeanSquarePx = 2;
-    const Qualities qualities = find_qualities(subject);
+    const Qualities& qualities = qualities_of(subject);
     const Quality& finest = qualities.finest.value_or(qualities.given);
-    const Errors errors = measure_errors(subject, qualities.terrain, finest);
+    const Errors errors = measure_errors(subject, qualities.terrain(), finest);
     const bool bounded = finest.claimed_px.has_value() || !qualities.finest;
     const double limit =
         bounded ? std::max(kGreatestPx, finest.claimed_px.value_or(0)) : kRootMeanSquarePx;
@@ -86,10 +86,11 @@ void claimed_bound_holds(const Subject& subject) {
     if (subject.method.claimed_bound.empty()) {
         throw NotApplicable("the method claims no bound on its error");
     }
-    const Qualities qualities = find_qualities(subject);
+    const Qualities& qualities = qualities_of(subject);
+    const TerrainPointer terrain = qualities.terrain();
     std::string broken;
     for (const Quality& quality : qualities.all()) {
-        const Errors errors = measure_errors(subject, qualities.terrain, quality);
+        const Errors errors = measure_errors(subject, terrain, quality);
         const double claimed = quality.claimed_px.value();
         const double greatest = errors.all.max.value_or(0);
         if (greatest <= claimed + kExactPx) continue;
@@ -104,12 +105,12 @@ void claimed_bound_holds(const Subject& subject) {
 void finer_is_no_worse(const Subject& subject) {
     // Which samples are drawn differs, so that a few of them may be worse off.
     constexpr double kSlack = 1.1, kSlackPx = 0.05;
-    const Qualities found = find_qualities(subject);
-    const std::vector<Quality> qualities = found.all();
+    const std::vector<Quality> qualities = qualities_of(subject).all();
     if (qualities.size() < 2) throw NotApplicable("the method has no quality knob");
+    const TerrainPointer terrain = qualities_of(subject).terrain();
     double coarser_px = 0;
     for (std::size_t i = 0; i < qualities.size(); ++i) {
-        const double px = measure_errors(subject, found.terrain, qualities[i]).all.p999.value_or(0);
+        const double px = measure_errors(subject, terrain, qualities[i]).all.p999.value_or(0);
         if (i > 0 && px > kSlack * coarser_px + kSlackPx) {
             throw PromiseBroken(fmt::format(
                 "{} is finer than {}, but its P99.9 of the screen error is {:.3g} px after {:.3g} "

@@ -6,6 +6,8 @@
 #include <map>
 #include <variant>
 
+#include "conformance/session.h"
+#include "results/json.h"
 #include "run/knob.h"
 
 namespace lodbench::conformance {
@@ -13,6 +15,10 @@ namespace lodbench::conformance {
 namespace {
 
 constexpr int kUsualSize = 257, kLargerSize = 513;  // samples an edge
+
+TerrainPointer terrain_of(int size) {
+    return make_terrain("ridged", size, size);
+}
 
 /// The knob's start where the subject has it.
 std::optional<run::Knob> knob_of(const Subject& subject) {
@@ -46,8 +52,12 @@ Camera overlooking(const TerrainInfo& terrain) {
 
 class Finder {
 public:
-    Finder(const Subject& subject, TerrainPointer terrain, const run::Knob& knob)
-        : subject_(subject), terrain_(std::move(terrain)), knob_(knob), steps_(steps_of(knob)) {
+    Finder(const Subject& subject, int terrain_size, const run::Knob& knob)
+        : subject_(subject),
+          terrain_size_(terrain_size),
+          terrain_(terrain_of(terrain_size)),
+          knob_(knob),
+          steps_(steps_of(knob)) {
         const double start = knob.admitted(knob.start);
         start_ = int(std::ranges::lower_bound(steps_, start) - steps_.begin());
     }
@@ -59,7 +69,7 @@ public:
         const int finer = finer_direction();
         finest_ = finest_step(finer);
         coarse_ = coarse_step(-finer, triangles(finest_));
-        Qualities found{.terrain = terrain_,
+        Qualities found{.terrain_size = terrain_size_,
                         .given = quality(start_, ""),
                         .finest = quality(finest_, " (finest)"),
                         .coarse = quality(coarse_, " (coarse)")};
@@ -126,6 +136,7 @@ private:
     }
 
     const Subject& subject_;
+    int terrain_size_;
     TerrainPointer terrain_;
     run::Knob knob_;
     std::vector<double> steps_;
@@ -133,7 +144,34 @@ private:
     std::map<int, Looked> looked_;
 };
 
+Json::Value to_json(const Quality& quality) {
+    Json::Value json;
+    json["name"] = quality.name;
+    json["settings"] = Json::arrayValue;
+    for (const auto& [name, value] : quality.settings) {
+        Json::Value& pair = json["settings"].append(Json::arrayValue);
+        pair.append(name);
+        pair.append(value);
+    }
+    // As text, for JSON's own numbers lose their last bits.
+    if (quality.claimed_px) json["claimed_px"] = fmt::format("{}", *quality.claimed_px);
+    return json;
+}
+
+Quality from_json(const Json::Value& json) {
+    Quality quality{.name = json["name"].asString(), .settings = {}, .claimed_px = std::nullopt};
+    for (const Json::Value& pair : json["settings"]) {
+        quality.settings.emplace_back(pair[0].asString(), pair[1].asString());
+    }
+    if (json.isMember("claimed_px")) quality.claimed_px = std::stod(json["claimed_px"].asString());
+    return quality;
+}
+
 }  // namespace
+
+TerrainPointer Qualities::terrain() const {
+    return terrain_of(terrain_size);
+}
 
 std::vector<Quality> Qualities::all() const {
     std::vector<Quality> qualities;
@@ -145,24 +183,49 @@ std::vector<Quality> Qualities::all() const {
 
 Qualities find_qualities(const Subject& subject) {
     const auto knob = knob_of(subject);
-    const auto terrain = [](int size) { return make_terrain("ridged", size, size); };
     if (!knob) {
         Qualities only;
-        only.terrain = terrain(kUsualSize);
+        only.terrain_size = kUsualSize;
         only.given.name = "default";
         return only;
     }
-    Finder usual(subject, terrain(kUsualSize), *knob);
+    Finder usual(subject, kUsualSize, *knob);
     const Qualities found = usual.find();
     if (usual.leaves_something_out()) return found;
-    return Finder(subject, terrain(kLargerSize), *knob).find();
+    return Finder(subject, kLargerSize, *knob).find();
+}
+
+const Qualities& qualities_of(const Subject& subject) {
+    std::optional<Qualities>& known = *subject.qualities;
+    if (!known) known = find_qualities(subject);
+    return *known;
+}
+
+std::string write_qualities(const Qualities& qualities) {
+    Json::Value json;
+    json["terrain_size"] = qualities.terrain_size;
+    json["given"] = to_json(qualities.given);
+    if (qualities.finest) json["finest"] = to_json(*qualities.finest);
+    if (qualities.coarse) json["coarse"] = to_json(*qualities.coarse);
+    return results::exact_text(json);
+}
+
+Qualities read_qualities(std::string_view line) {
+    const Json::Value json = results::parse_json(line, "qualities found by a check");
+    Qualities qualities;
+    qualities.terrain_size = json["terrain_size"].asInt();
+    qualities.given = from_json(json["given"]);
+    if (json.isMember("finest")) qualities.finest = from_json(json["finest"]);
+    if (json.isMember("coarse")) qualities.coarse = from_json(json["coarse"]);
+    return qualities;
 }
 
 void check_each_quality(const Subject& subject, const std::function<void(const Selected&)>& check) {
     constexpr int kCameras = 2;
-    const Qualities qualities = find_qualities(subject);
+    const Qualities& qualities = qualities_of(subject);
+    const TerrainPointer terrain = qualities.terrain();
     for (const Quality& quality : qualities.all()) {
-        Session session(subject, qualities.terrain, quality.settings);
+        Session session(subject, terrain, quality.settings);
         Random random(subject.seed);
         for (int i = 0; i < kCameras; ++i) {
             const Camera camera = random_camera(random, session.terrain());

@@ -4,27 +4,39 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "conformance/session.h"
+#include "api/camera.h"
+#include "run/settings.h"
+
+namespace lodbench::terrain {
+class HeightField;
+}
 
 namespace lodbench::conformance {
+
+class Session;
+struct Subject;
 
 /// One value of the quality knob.
 struct Quality {
     std::string name;                  ///< for messages: "tau = 0.01 (finest)"
-    Session::Settings settings;        ///< for a Session; empty for a method without a knob
+    run::Settings settings;            ///< for a Session; empty for a method without a knob
     std::optional<double> claimed_px;  ///< the claimed bound there; nothing where none is claimed
 };
 
 /// The subject's own setting, and the two ends between which its level of detail is at work.
 struct Qualities {
-    TerrainPointer terrain;  ///< on which level of detail is at work
+    int terrain_size = 0;  ///< samples an edge of the ridged terrain on which it is at work
     Quality given;
     /// Both empty for a method without a quality knob: `given` is all that there is.
     std::optional<Quality> finest, coarse;
+    /// The terrain of that size, made anew.
+    [[nodiscard]] std::shared_ptr<const terrain::HeightField> terrain() const;
     /// From the coarsest to the finest.
     [[nodiscard]] std::vector<Quality> all() const;
 };
@@ -38,6 +50,13 @@ struct Qualities {
 ///   drawn, or the end of the range.
 [[nodiscard]] Qualities find_qualities(const Subject& subject);
 inline constexpr std::uint64_t kMostTriangles = 8;
+
+/// What `find_qualities` gives, found by the first check that asks and kept in the subject.
+[[nodiscard]] const Qualities& qualities_of(const Subject& subject);
+
+/// On its way between processes: one line, and what it says.
+[[nodiscard]] std::string write_qualities(const Qualities& qualities);
+[[nodiscard]] Qualities read_qualities(std::string_view line);
 
 /// A camera that was selected.
 struct Selected {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "conformance/quality.h"
 #include "conformance/session.h"
 #include "conformance/surface_renderer.h"
 

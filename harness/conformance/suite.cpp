@@ -76,6 +76,7 @@ Verdict verdict_of(char letter) {
     }
 }
 
+/// A letter and the reason for it.
 std::string judge(const Check& check, const Subject& subject) {
     try {
         check.run(subject);
@@ -91,6 +92,21 @@ std::string judge(const Check& check, const Subject& subject) {
     } catch (const run::MethodFailure& failure) {
         return kFailed + std::string(failure.what());
     }
+}
+
+/// The verdict after a line with what the check found out and others need; empty where it asked for
+/// nothing.
+std::string answer_of(const Check& check, const Subject& subject) {
+    const std::string verdict = judge(check, subject);
+    const std::optional<Qualities>& found = *subject.qualities;
+    return (found ? write_qualities(*found) : "") + "\n" + verdict;
+}
+
+/// Takes from an answer what was found, for the checks to come, and leaves the verdict.
+std::string verdict_in(const std::string& answer, const Subject& subject) {
+    const std::size_t line = answer.find('\n');
+    if (line > 0) *subject.qualities = read_qualities(std::string_view(answer).substr(0, line));
+    return answer.substr(line + 1);
 }
 
 }  // namespace
@@ -127,7 +143,7 @@ CheckReport run_check(const Check& check, const Subject& subject, double time_li
     CheckReport report;
     report.check = check.name;
     const base::Answer answer = base::run_isolated(
-        time_limit_s, [&] { return judge(check, watched); },
+        time_limit_s, [&] { return answer_of(check, watched); },
         [&] {
             const run::Call call = watch.hung_in();
             if (call == run::Call::none) return std::string();
@@ -139,10 +155,12 @@ CheckReport run_check(const Check& check, const Subject& subject, double time_li
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report.reason = answer.text;
     switch (answer.ending) {
-        case base::Ending::answered:
-            report.verdict = verdict_of(answer.text.front());
-            report.reason = answer.text.substr(1);
+        case base::Ending::answered: {
+            const std::string verdict = verdict_in(answer.text, subject);
+            report.verdict = verdict_of(verdict.front());
+            report.reason = verdict.substr(1);
             break;
+        }
         case base::Ending::refused: throw InputError(answer.text);
         case base::Ending::no_means: report.verdict = Verdict::skipped; break;
         case base::Ending::threw:

@@ -21,7 +21,7 @@ struct CheckReport {
 
 /// Runs one check in a child process for at most `time_limit_s`. A child that dies, exceeds the
 /// limit or is in one call for half of it has failed; an environment without the means (no GL)
-/// skips.
+/// skips. What the check finds out of the method and others need goes into the subject.
 [[nodiscard]] CheckReport run_check(const Check& check, const Subject& subject,
                                     double time_limit_s);
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "conformance/quality.h"
 #include "conformance/session.h"
 
 namespace lodbench::conformance {

@@ -28,8 +28,14 @@ std::string summary_text(const std::vector<Json::Value>& cells,
         return value.isNull() ? std::string()
                               : fmt::format("- {}: {}\n", title, markdown_text(value.asString()));
     };
-    // Read as a comment: the tables first, what they depend on folded away below.
-    std::string text = equal_texts(cells, run);
+    // Read as a comment: the tables first, what they depend on folded away below, but for what is
+    // wrong with their times.
+    std::string text;
+    for (const Json::Value& noise : run["noise"]) {
+        text += fmt::format("- Noise: {}\n", markdown_text(noise.asString()));
+    }
+    if (!text.empty()) text += "\n";
+    text += equal_texts(cells, run);
     text += markdown_table(table_rows(cells, seed));
     const auto fold = [&text](const std::string& title) {
         text += fmt::format("\n<details><summary>{}</summary>\n\n", title);

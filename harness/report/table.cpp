@@ -68,7 +68,8 @@ std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uin
                      group.label,
                      {},
                      results::failures_of(group),
-                     results::disagreements_of(group)};
+                     results::disagreements_of(group),
+                     results::noise_of(group)};
         const auto& good = group.good;
         row.fields = {
             fps_text(good, seed),
@@ -121,6 +122,7 @@ std::string text_table(const std::vector<TableRow>& rows) {
 std::string remarks_text(const std::vector<TableRow>& rows) {
     std::string failures;
     std::string warnings;
+    std::string noise;
     for (const TableRow& row : rows) {
         for (const std::string& failure : row.failures) {
             failures += fmt::format("  {}, {}: {}\n", row.label, row.scenario, failure);
@@ -128,9 +130,13 @@ std::string remarks_text(const std::vector<TableRow>& rows) {
         for (const std::string& warning : row.warnings) {
             warnings += fmt::format("  {}, {}: {}\n", row.label, row.scenario, warning);
         }
+        for (const std::string& words : row.noise) {
+            noise += fmt::format("  {}, {}, {}\n", row.label, row.scenario, words);
+        }
     }
     std::string text;
     if (!warnings.empty()) text += "\nWarnings\n" + warnings;
+    if (!noise.empty()) text += "\nNoise\n" + noise;
     if (!failures.empty()) text += "\nNot measured\n" + failures;
     return text;
 }
@@ -161,6 +167,7 @@ std::string markdown_table(const std::vector<TableRow>& rows) {
     std::string text;
     Fold warnings{"Warnings"};
     Fold failures{"Not measured"};
+    std::string noise;  // not folded: it is about the figures above
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const TableRow& row = rows[r];
         if (r == 0 || row.scenario != rows[r - 1].scenario) {
@@ -173,7 +180,12 @@ std::string markdown_table(const std::vector<TableRow>& rows) {
             fmt::format("| {} | {} |\n", markdown_text(row.label), fmt::join(row.fields, " | "));
         for (const std::string& warning : row.warnings) warnings.add(row, warning);
         for (const std::string& failure : row.failures) failures.add(row, failure);
+        for (const std::string& words : row.noise) {
+            noise += fmt::format("- Noise: {}, {}, {}\n", markdown_text(row.label),
+                                 markdown_text(row.scenario), markdown_text(words));
+        }
     }
+    if (!noise.empty()) text += "\n" + noise;
     return text + warnings.text() + failures.text();
 }
 

@@ -15,6 +15,7 @@ struct TableRow {
     std::vector<std::string> fields;    ///< as kTableColumns after the first
     std::vector<std::string> failures;  ///< "status: reason" of the repetitions that are not ok
     std::vector<std::string> warnings;  ///< why the figures are not to be trusted
+    std::vector<std::string> noise;     ///< what disturbed the times
 };
 
 /// "method", "fps (range)", ...
@@ -24,8 +25,8 @@ struct TableRow {
 [[nodiscard]] std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells,
                                                std::uint64_t seed);
 
-/// For a terminal: columns aligned, one block a scenario, failures below. For summary.md: Markdown,
-/// failures folded.
+/// For a terminal: columns aligned, one block a scenario, noise and failures below. For summary.md:
+/// Markdown, failures folded.
 [[nodiscard]] std::string text_table(const std::vector<TableRow>& rows);
 /// What text_table has below its tables.
 [[nodiscard]] std::string remarks_text(const std::vector<TableRow>& rows);

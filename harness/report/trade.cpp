@@ -72,6 +72,9 @@ std::string scenario_text(std::span<const TradeRow> rows, results::ErrorMetric m
         for (const std::string& failure : row.failures) {
             failures += fmt::format("\n- {}, {}", row.label, failure);
         }
+        for (const std::string& words : row.noise) {
+            failures += fmt::format("\n- noise: {}, {}", row.label, words);
+        }
     }
     text += aligned_table(lines) + failures;
     if (!failures.empty()) text += "\n";
@@ -203,6 +206,7 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
         row.method = group.method;
         row.label = group.label;
         row.failures = results::failures_of(group);
+        row.noise = results::noise_of(group);
         const auto knob = knobs.find(group.method);
         for (const Json::Value* cell : group.good) {
             if (knob != knobs.end())

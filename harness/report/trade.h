@@ -80,6 +80,7 @@ struct TradeRow {
     std::optional<double> triangles, gpu_bytes, prepare_s;
     bool on_front = false;  ///< of error against frame time, within its scenario
     std::vector<std::string> failures;
+    std::vector<std::string> noise;  ///< what disturbed the times
 };
 
 /// `knobs`: each method's quality knob by its id. Rows in order of scenario, method and knob.

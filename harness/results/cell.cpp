@@ -224,6 +224,26 @@ CellResult read_result(std::string_view text, const std::string& where) {
     });
 }
 
+std::string noise_of(const CellResult& result) {
+    constexpr double kFar = 1.5;
+    constexpr double kLong_ms = 500;  // a shorter flight is held up by any trifle
+    double wall_ms = 0, cpu_ms = 0, gpu_ms = 0;
+    bool knows_gpu = true;
+    for (const FrameRecord& frame : result.frames) {
+        wall_ms += frame.wall_ms;
+        cpu_ms += frame.cpu_ms;
+        gpu_ms += frame.gpu_ms.value_or(0);
+        knows_gpu = knows_gpu && frame.gpu_ms;
+    }
+    // Where a GPU draws and its timer is not believed, the wait for it cannot be told from another.
+    if (!result.software && !knows_gpu) return {};
+    if (wall_ms < kLong_ms || wall_ms <= kFar * (cpu_ms + gpu_ms)) return {};
+    return fmt::format(
+        "its frames took {:.0f} ms, and {:.0f} ms of CPU{} time were spent on them: it waited for "
+        "other programs, a quota or the disk, and its times say how long",
+        wall_ms, cpu_ms + gpu_ms, result.software ? "" : " and GPU");
+}
+
 Json::Value cell_record(const CellName& cell, const CellResult& result, double budget_ms) {
     Json::Value json;
     json["cell"] = cell.id;
@@ -283,6 +303,7 @@ Json::Value cell_record(const CellName& cell, const CellResult& result, double b
     json["warmup_frames"] = result.warmup_frames;
     json["frames_in_flight"] = result.frames_in_flight;
     json["modules"] = texts(result.modules);
+    json["noise"] = text_or_null(noise_of(result));
     json["warnings"] = texts(result.flight_warnings);
     for (const std::string& warning : result.warnings) json["warnings"].append(warning);
     return json;

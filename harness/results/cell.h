@@ -79,6 +79,10 @@ struct CellResult {
 [[nodiscard]] std::string write_result(const CellResult& result);
 [[nodiscard]] CellResult read_result(std::string_view text, const std::string& where);
 
+/// In words, that the frames' wall time is far above the time that was spent on them; "" where it
+/// is not, cannot be told, or says nothing (flights under half a second).
+[[nodiscard]] std::string noise_of(const CellResult& result);
+
 /// The object of cells.jsonl; what was not measured is null.
 [[nodiscard]] Json::Value cell_record(const CellName& name, const CellResult& result,
                                       double budget_ms);

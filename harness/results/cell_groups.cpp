@@ -105,6 +105,17 @@ std::vector<std::string> disagreements_of(const CellGroup& group) {
     return texts;
 }
 
+std::vector<std::string> noise_of(const CellGroup& group) {
+    std::vector<std::string> texts;
+    for (const Json::Value* cell : group.good) {
+        const Json::Value& noise = (*cell)["noise"];
+        if (!noise.isString()) continue;
+        texts.push_back(
+            fmt::format("repetition {}: {}", (*cell)["repetition"].asInt(), noise.asString()));
+    }
+    return texts;
+}
+
 std::string value_text(const Json::Value& value) {
     if (value.isString()) return value.asString();
     if (value.isBool()) return value.asBool() ? "true" : "false";

@@ -34,6 +34,9 @@ struct CellGroup {
 /// what did not.
 [[nodiscard]] std::vector<std::string> disagreements_of(const CellGroup& group);
 
+/// "repetition n: ..." of those whose times something else disturbed.
+[[nodiscard]] std::vector<std::string> noise_of(const CellGroup& group);
+
 /// A parameter's value as text.
 [[nodiscard]] std::string value_text(const Json::Value& value);
 

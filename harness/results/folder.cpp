@@ -99,7 +99,7 @@ Json::Value read_run(const fs::path& folder) {
         parse_json(read_input(file, "name a results folder, as `lodbench run --out DIR` writes it"),
                    file.string());
     check_schema(run, file);
-    for (const char* key : {"scenarios", "warnings", "cells"}) {
+    for (const char* key : {"scenarios", "warnings", "noise", "cells"}) {
         if (!run[key].isNull()) (void)get_array(run, key, file.string());
     }
     return run;
@@ -254,6 +254,7 @@ void check_cell(const Json::Value& cell, const std::string& where) {
     expect("repetition", cell["repetition"].isInt(), "a whole number");
     expect("params", cell["params"].isObject(), "an object");
     expect("reason", cell["reason"].isNull() || cell["reason"].isString(), "text");
+    expect("noise", cell["noise"].isNull() || cell["noise"].isString(), "text or null");
     const Json::Value& warnings = cell["warnings"];
     expect("warnings",
            warnings.isNull() || (warnings.isArray() &&

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "api/error.h"
 #include "base/files.h"
@@ -40,16 +42,18 @@ Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
             json_method["citation"] = method.citation;
             json_method["quality_knob"] =
                 method.quality_knob.empty() ? Json::Value::null : Json::Value(method.quality_knob);
+            json_method["compiled"] = method.compiled;
             entry["methods"].append(json_method);
         }
+        entry["left_out"] = Json::arrayValue;
+        for (const std::string& words : plugin.left_out) entry["left_out"].append(words);
         json.append(entry);
     }
     return json;
 }
 
-/// Of a recorded flight's file.
-std::string flight_checksum(const scenario::Scenario& scenario) {
-    return results::checksum_of(base::read_text(scenario.path.recorded));
+std::string checksum_of_file(const fs::path& file) {
+    return results::checksum_of(base::read_text(file));
 }
 
 /// Whether the flight is that for which its knob values were found.
@@ -73,6 +77,7 @@ Json::Value to_json(const scenario::EqualError& equal, bool as_kept) {
 Json::Value run_context(const RunRequest& request, const Plan& plan,
                         const std::vector<PluginListing>& plugins) {
     Json::Value run = machine_context();
+    run["load_average"] = results::number(request.load_average);
     run["started"] = utc_now();
     run["command_line"] = request.command_line;
     run["seed"] = Json::UInt64(plan.seed);
@@ -92,12 +97,14 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
         json["rate_hz"] = scenario.rate_hz;
         json["repetitions"] = scenario.repetitions;
         if (!scenario.path.recorded.empty()) {
-            json["flight_checksum"] = flight_checksum(scenario);
+            json["flight_file"] = fs::absolute(scenario.path.recorded).string();
+            json["flight_checksum"] = checksum_of_file(scenario.path.recorded);
         }
         if (scenario.equal) json["equal"] = to_json(*scenario.equal, flown_as_kept(request));
         run["scenarios"].append(json);
     }
     run["plugins"] = listings_to_json(plugins);
+    run["noise"] = Json::arrayValue;
     run["warnings"] = Json::arrayValue;
     for (const std::string& warning : plan.warnings) run["warnings"].append(warning);
     run["cells"] = plan_to_json(plan);
@@ -218,9 +225,6 @@ private:
         const std::vector<PluginListing> plugins =
             list_plugins(plugin_folders(request_.plugin_dirs));
         plan_ = make_plan(request_, plugins);
-        if (std::string warning = quota_warning(machine_context()); !warning.empty()) {
-            plan_.warnings.push_back(std::move(warning));
-        }
         outcome_.warnings = plan_.warnings;
         claim_names();
         run_ = run_context(request_, plan_, plugins);
@@ -229,11 +233,16 @@ private:
         write_scenarios(run_["scenarios"]);
     }
 
-    /// Copies of the scenarios' files, which the cells read.
+    /// Copies of the scenarios' files and of their recorded flights, which the cells read.
     void write_scenarios(const Json::Value& scenarios) const {
         for (const Json::Value& scenario : scenarios) {
             const fs::path file = scenario_file(scenario["name"].asString());
             if (!fs::exists(file)) base::write_whole(file, scenario["text"].asString());
+            const fs::path flight = scenario["flight_file"].asString();
+            const fs::path kept = scenario::place_of_kept_flight(file);
+            if (flight.empty() || fs::exists(kept) || !fs::is_regular_file(flight)) continue;
+            refuse_other_flight(flight, scenario["flight_checksum"]);
+            base::write_whole(kept, base::read_text(flight));
         }
     }
 
@@ -262,8 +271,8 @@ private:
             write_scenarios(run_["scenarios"]);  // a run killed early may not have come to it
             const std::vector<PluginListing> plugins =
                 list_plugins(plugin_folders(request_.plugin_dirs));
-            plan_ = plan_from_json(run_, folder_.path(), plugins);
             refuse_other_flights();
+            plan_ = plan_from_json(run_, folder_.path(), plugins);
             refuse_other_request(file, plugins);
         } catch (const Json::Exception& error) {
             throw InputError(
@@ -296,17 +305,26 @@ private:
 
     /// And on one flight: that of a file is not in the scenario's text.
     void refuse_other_flights() const {
-        for (Json::ArrayIndex i = 0; i < plan_.scenarios.size(); ++i) {
-            const scenario::Scenario& scenario = plan_.scenarios[i];
-            const Json::Value& began = run_["scenarios"][i]["flight_checksum"];
-            if (scenario.path.recorded.empty() || began.isNull()) continue;  // an older version's
-            const std::string here = flight_checksum(scenario);
-            if (began == here) continue;
-            throw InputError(fmt::format(
-                "{}: the flight has changed since the run began: its checksum was {} and is {}; "
-                "restore the file or begin anew with another --out",
-                scenario.path.recorded.string(), results::to_text(began), here));
+        for (const Json::Value& scenario : run_["scenarios"]) {
+            const fs::path kept =
+                scenario::place_of_kept_flight(scenario_file(scenario["name"].asString()));
+            results::expect_plain_file(kept);
+            for (const fs::path& flight : {fs::path(scenario["flight_file"].asString()), kept}) {
+                // The named file may be gone: the copy is what is flown.
+                if (fs::is_regular_file(flight)) {
+                    refuse_other_flight(flight, scenario["flight_checksum"]);
+                }
+            }
         }
+    }
+
+    static void refuse_other_flight(const fs::path& flight, const Json::Value& began) {
+        const std::string here = checksum_of_file(flight);
+        if (began.isNull() || began == here) return;
+        throw InputError(fmt::format(
+            "{}: the flight has changed since the run began: its checksum was {} and is {}; "
+            "restore the file or begin anew with another --out",
+            flight.string(), results::to_text(began), here));
     }
 
     /// The same for the driver: what a cell saw of it must be what the first cell saw.
@@ -347,8 +365,13 @@ private:
         cell.spec.views = request_.views.empty() ? folder_.views() : request_.views;
         cell.spec.scenario_file = scenario_file(cell.scenario);
         cell.spec.scenario_origin = plan_.origins[which];
-        const CellLimits limits{scenario.cell_time_limit_s, scenario.frame_time_limit_s,
-                                scenario.memory_limit_bytes};
+        cell.spec.wait_for_debugger = request_.wait_for_debugger;
+        CellLimits limits{scenario.cell_time_limit_s, scenario.frame_time_limit_s,
+                          scenario.memory_limit_bytes};
+        if (request_.wait_for_debugger) {
+            limits.cell_s = limits.frame_s = std::numeric_limits<double>::infinity();
+            warn_once("flown under a debugger (--wait-for-debugger): times mean nothing");
+        }
         const results::CellResult result =
             run_cell(cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
                      [&](int done, int total) {
@@ -373,6 +396,7 @@ private:
             run_["gl"] = gl_context(result);
             write_run();
         }
+        note_noise();
         observer_.cell_finished(cell, index, plan_.cells.size(), record);
     }
 
@@ -383,6 +407,22 @@ private:
         run_["warnings"].append(warning);
         write_run();
         observer_.warned(warning);
+    }
+
+    /// When there are figures that it is about. A run that is taken up may meet another load than
+    /// when it began.
+    void note_noise() {
+        if (std::exchange(noise_is_noted_, true)) return;
+        Json::Value machine = machine_context();
+        machine["load_average"] = results::number(request_.load_average);
+        for (const std::string& words : noise_of(machine)) {
+            const Json::Value& told = run_["noise"];
+            if (std::find(told.begin(), told.end(), words) == told.end()) {
+                run_["noise"].append(words);
+            }
+            observer_.noisy(words);
+        }
+        write_run();
     }
 
     void write_run() {
@@ -415,6 +455,7 @@ private:
     Plan plan_;
     Json::Value run_;
     std::set<std::string> finished_;
+    bool noise_is_noted_ = false;
     CampaignOutcome outcome_;
 };
 

@@ -22,6 +22,8 @@ public:
     CampaignObserver(const CampaignObserver&) = delete;
     CampaignObserver& operator=(const CampaignObserver&) = delete;
     virtual void warned(const std::string& /*warning*/) {}
+    /// Of what disturbs times.
+    virtual void noisy(const std::string& /*words*/) {}
     virtual void cell_progress(const PlannedCell& /*cell*/, std::size_t /*index*/,
                                std::size_t /*count*/, double /*fraction*/) {}
     virtual void cell_finished(const PlannedCell& /*cell*/, std::size_t /*index*/,

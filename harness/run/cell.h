@@ -25,9 +25,10 @@ struct CellSpec {
     Settings settings;
     int repetition = 0;
     std::uint64_t seed = 1;
-    std::string device;         ///< as for platform::Context
-    std::filesystem::path out;    ///< results folder
-    std::filesystem::path views;  ///< folder of the ViewCache; "": there is none
+    std::string device;              ///< as for platform::Context
+    std::filesystem::path out;       ///< results folder
+    std::filesystem::path views;     ///< folder of the ViewCache; "": there is none
+    bool wait_for_debugger = false;  ///< with the plugin opened, before its first call
 };
 
 /// What the child process is given. Throws InputError (reading) for what is damaged.

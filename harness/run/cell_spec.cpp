@@ -41,6 +41,7 @@ std::string write_spec(const CellSpec& spec) {
     json["device"] = spec.device;
     json["out"] = spec.out.string();
     json["views"] = spec.views.string();
+    if (spec.wait_for_debugger) json["wait_for_debugger"] = true;
     return results::exact_text(json);
 }
 
@@ -78,6 +79,7 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         spec.device = results::get_string(json, "device", where);
         spec.out = results::get_string(json, "out", where);
         spec.views = results::get_string(json, "views", where);
+        spec.wait_for_debugger = json["wait_for_debugger"].asBool();
         return spec;
     } catch (const Json::Exception& error) {
         throw InputError(fmt::format("{}: {}", where, error.what()));

@@ -76,14 +76,31 @@ std::optional<double> cpu_quota(const fs::path& groups, const fs::path& mounts) 
     return least;
 }
 
-std::string quota_warning(const Json::Value& machine) {
-    const Json::Value& quota = machine["cpu_quota_cores"];
+std::optional<double> load_average() {
+    double load = 0;
+    if (getloadavg(&load, 1) != 1) return std::nullopt;
+    return load;
+}
+
+std::vector<std::string> noise_of(const Json::Value& machine) {
+    std::vector<std::string> texts;
     const Json::Value& cores = machine["cores"];
-    if (quota.isNull() || cores.isNull() || quota.asDouble() >= cores.asDouble()) return {};
-    return fmt::format(
-        "the CPU quota of this process's control group is {:.3g} of its {} cores: "
-        "times hold pauses that the system imposes; lift the quota to compare them",
-        quota.asDouble(), cores.asInt());
+    if (cores.isNull()) return texts;
+    const Json::Value& quota = machine["cpu_quota_cores"];
+    if (!quota.isNull() && quota.asDouble() < cores.asDouble()) {
+        texts.push_back(
+            fmt::format("the CPU quota of this process's control group is {:.3g} of its {} cores: "
+                        "times hold pauses that the system imposes; lift the quota to compare them",
+                        quota.asDouble(), cores.asInt()));
+    }
+    const Json::Value& load = machine["load_average"];
+    if (!load.isNull() && load.asDouble() > cores.asDouble()) {
+        texts.push_back(fmt::format(
+            "the load average was {:.2f} on {} cores when this began: other programs took "
+            "the processor's time; wait for them or end them to compare times",
+            load.asDouble(), cores.asInt()));
+    }
+    return texts;
 }
 
 std::string utc_now() {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "results/cell.h"
 
@@ -21,8 +22,12 @@ namespace lodbench::run {
     const std::filesystem::path& groups = "/proc/self/cgroup",
     const std::filesystem::path& mounts = "/sys/fs/cgroup");
 
-/// What to say of a machine whose quota is below its cores; "" where it is not.
-[[nodiscard]] std::string quota_warning(const Json::Value& machine);
+/// Processes that ran or waited to, mean of the last minute. Nothing where the system does not say.
+[[nodiscard]] std::optional<double> load_average();
+
+/// What on the machine disturbs times, in words: a quota (`cpu_quota_cores`) below its cores, or a
+/// load (`load_average`) above them.
+[[nodiscard]] std::vector<std::string> noise_of(const Json::Value& machine);
 
 /// Date and time in UTC: "2025-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_now();

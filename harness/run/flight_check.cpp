@@ -6,6 +6,7 @@
 
 #include "measure/box_in_view.h"
 #include "scenario/flight_path.h"
+#include "terrain/void_fill.h"
 
 namespace lodbench::run {
 
@@ -140,13 +141,8 @@ std::vector<std::string> FlightCheck::warnings(const std::string& name) const {
                         "before, and show neither popping nor what moving on costs",
                         standing_.count, frames_));
     }
-    const double samples = double(info.rows) * double(info.columns);
-    if (double(info.void_count) >= kManyVoids * samples) {
-        warn(
-            fmt::format("{} of the terrain's {} samples ({:.2g} %) had no data and were filled: "
-                        "what is measured there is no terrain",
-                        info.void_count, std::int64_t(info.rows) * info.columns,
-                        100 * double(info.void_count) / samples));
+    if (std::string voids = terrain::warning_of_voids(info); !voids.empty()) {
+        texts.push_back(std::move(voids));
     }
     return texts;
 }

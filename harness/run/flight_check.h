@@ -13,8 +13,6 @@ namespace lodbench::run {
 
 class FlightCheck {
 public:
-    /// Share of a terrain's samples without data from which on it is said.
-    static constexpr double kManyVoids = 0.01;
     /// Share of a flight's frames with the view of the frame before from which on it is said.
     static constexpr double kLongStand = 0.5;
 
@@ -24,7 +22,7 @@ public:
     /// The camera of the next frame. Reads no more of a terrain on disk than a few of its tiles.
     void add(const Camera& camera);
 
-    /// In words, each about `name`, the scenario's.
+    /// In words: of the flight of `name`, the scenario's, and of voids in what it flies over.
     [[nodiscard]] std::vector<std::string> warnings(const std::string& name) const;
 
 private:

@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/debugger.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/modules.h"
@@ -35,7 +36,8 @@ namespace {
 
 scenario::Scenario read_scenario(const CellSpec& spec) {
     scenario::Scenario scenario =
-        scenario::parse_scenario(terrain::read_toml_text(spec.scenario_file), spec.scenario_origin);
+        scenario::parse_scenario(terrain::read_toml_text(spec.scenario_file), spec.scenario_origin,
+                                 scenario::kept_flight(spec.scenario_file));
     scenario::apply(spec.overrides, scenario);
     return scenario;
 }
@@ -181,6 +183,12 @@ void Flight::open() {
     result_.terrain_name = terrain_->info().name;
     result_.terrain_checksum = terrain_->info().checksum;
     signs_.enter(Call::start);
+    if (spec_.wait_for_debugger) {
+        signs_.enter(Call::open_plugin);
+        // Stays mapped, so that breakpoints find its functions.
+        static_cast<void>(PluginLibrary(spec_.plugin));
+        base::await_debugger();
+    }
     make_stage();
     if (const std::string now = plugin_checksum(); now != result_.plugin_checksum) {
         // Which of the two was opened nobody knows: the cell has none.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
 #include "api/error.h"
@@ -61,18 +62,65 @@ void require_one_setting(const Plan& plan, const std::string& method,
     }
 }
 
-/// What a probe's campaign says goes to nobody but for warnings, once.
-class Quiet final : public CampaignObserver {
+/// Watches the campaigns of the probes: passes on warnings, once, and where the search stands.
+class ProbeWatch final : public CampaignObserver {
 public:
-    explicit Quiet(CampaignObserver& observer) : observer_(observer) {}
+    ProbeWatch(CampaignObserver& observer, SearchObserver& search, int methods, int most_probes)
+        : observer_(observer), search_(search) {
+        place_.method_count = methods;
+        place_.method_number = 0;
+        place_.most_probes = most_probes;
+    }
+    void next_method(const std::string& method) {
+        place_.method = method;
+        ++place_.method_number;
+        place_.probe = 0;
+    }
+    void next_probe() { ++place_.probe; }
+    void begin_flight() { begun_ = Clock::now(); }
+    /// At the end of a flight.
+    [[nodiscard]] SearchPlace place() { return place_at(1); }
+
     void warned(const std::string& warning) override {
         if (told_.insert(warning).second) observer_.warned(warning);
     }
+    void noisy(const std::string& words) override { observer_.noisy(words); }
+    void cell_progress(const PlannedCell&, std::size_t, std::size_t, double fraction) override {
+        search_.flying(place_at(fraction));
+    }
+    void cell_finished(const PlannedCell&, std::size_t, std::size_t, const Json::Value&) override {
+        // Those that a search before this one flew are not among them.
+        flown_s_ += std::chrono::duration<double>(Clock::now() - begun_).count();
+        ++flown_;
+    }
 
 private:
+    using Clock = std::chrono::steady_clock;
+    SearchPlace place_at(double fraction) {
+        place_.fraction = fraction;
+        const double of_this = place_.most_probes - place_.probe + 1 - fraction;
+        const double of_others =
+            double(place_.method_count - place_.method_number) * place_.most_probes;
+        if (flown_ > 0) place_.most_left_s = flown_s_ / flown_ * (of_this + of_others);
+        return place_;
+    }
     CampaignObserver& observer_;
+    SearchObserver& search_;
+    SearchPlace place_;
+    Clock::time_point begun_;
+    double flown_s_ = 0;
+    int flown_ = 0;
     std::set<std::string> told_;
 };
+
+/// Of the frames that the economy names, those that `every` measures too: the others would join
+/// the figures of the final flights, and were in those of no probe.
+std::vector<int> economy_of_measured_frames(const scenario::Scenario& scenario) {
+    std::vector<int> frames;
+    std::ranges::copy_if(scenario.measure.economy, std::back_inserter(frames),
+                         [&](int frame) { return frame % scenario.measure.every == 0; });
+    return frames;
+}
 
 void write_record(const fs::path& file, const results::MatchRecord& record) {
     base::write_whole(file, results::seal(to_json(record), true) + "\n");
@@ -141,8 +189,7 @@ results::MatchRecord match_record(const results::MatchTarget& target,
 }
 
 MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, int most_probes,
-                   const fs::path& program, CampaignObserver& observer,
-                   const ProbeObserver& probed) {
+                   const fs::path& program, CampaignObserver& observer, SearchObserver& search) {
     const bool of_the_truth = target.quantity == results::MatchTarget::Quantity::pixel_error;
     RunRequest request = asked;
     request.kept_knobs = false;
@@ -172,10 +219,13 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             [&](const std::string& setting) { return setting.starts_with(method + "."); });
         return settings;
     };
-    Quiet quiet(observer);
+    const auto searched = std::ranges::count_if(
+        outcome.methods, [](const MatchedMethod& method) { return method.knob.has_value(); });
+    ProbeWatch watch(observer, search, int(searched), most_probes);
     int probes_flown = 0;
     for (MatchedMethod& method : outcome.methods) {
         if (!method.knob) continue;
+        watch.next_method(method.method);
         int number = 0;
         const auto fly = [&](double value) -> std::optional<double> {
             RunRequest probe = request;
@@ -189,9 +239,10 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             probe.overrides.truth = of_the_truth;
             probe.overrides.economy.emplace();  // none
             probe.overrides.pixels_only = true;  // the error that is to be equal is theirs
+            watch.begin_flight();
             const CampaignOutcome flown = [&] {
                 try {
-                    return run_campaign(probe, program, quiet);
+                    return run_campaign(probe, program, watch);
                 } catch (const InputError&) {
                     if (fresh && probes_flown == 0) folder->discard();
                     throw;
@@ -207,10 +258,11 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
                                                     : "the quantity was not measured";
                 method.failure = failure;
             }
-            probed(method, {value, measured}, failure);
+            search.probed(watch.place(), method, {value, measured}, failure);
             return measured;
         };
         const auto measure = [&](double value) {
+            watch.next_probe();
             const std::optional<double> once = fly(value);
             if (!once || !method.asynchronous || !target.meets(*once)) return once;
             // Its error differs from flight to flight: once within the tolerance may be chance.
@@ -225,6 +277,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
     }
 
     RunRequest final = request;
+    final.overrides.economy = economy_of_measured_frames(plan.scenarios.front());
     final.methods.clear();
     for (const MatchedMethod& method : outcome.methods) {
         if (method.knob && !method.search.best) continue;  // no value of its knob could be flown

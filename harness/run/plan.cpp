@@ -161,6 +161,21 @@ std::vector<scenario::MethodRequest> requests_of(const scenario::Scenario& scena
     return requests;
 }
 
+/// Of the methods that fly, those whose times the compiler's options set apart.
+std::vector<std::string> warn_of_compilation(const std::map<std::string, MethodInfo>& methods,
+                                             const std::set<std::string>& flown) {
+    std::vector<std::string> warnings;
+    for (const std::string& id : flown) {
+        const MethodInfo& method = methods.at(id);
+        if (method.compiled == LODBENCH_COMPILED) continue;
+        warnings.push_back(fmt::format(
+            "plugin {} of method '{}' was compiled {}, lodbench {}: its times do not compare with "
+            "those of other methods; build it with lodbench's CMAKE_BUILD_TYPE",
+            method.plugin.string(), id, method.compiled, LODBENCH_COMPILED));
+    }
+    return warnings;
+}
+
 /// The plugin that a run began with, found as when it began.
 const MethodInfo& method_again(const std::vector<PluginListing>& plugins, const std::string& id) {
     try {
@@ -229,6 +244,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     Plan plan;
     for (const PluginListing& plugin : plugins) {
         if (!plugin.refusal.empty()) plan.warnings.push_back(plugin.refusal);
+        std::ranges::copy(plugin.left_out, std::back_inserter(plan.warnings));
     }
     std::vector<fs::path> files = request.scenarios;
     if (files.empty()) files.push_back(demo_scenario());
@@ -291,6 +307,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     if (plan.cells.empty()) {
         throw InputError("there is no method to fly: no plugin was found; give --plugin-dir DIR");
     }
+    std::ranges::copy(warn_of_compilation(methods, used), std::back_inserter(plan.warnings));
     plan.seed = request.overrides.seed.value_or(plan.scenarios.front().seed);
     interleave(plan.cells, plan.seed);
     base::SplitMix64 seeds(~plan.seed);
@@ -320,7 +337,9 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out,
         const fs::path file = out / "scenarios" / (name + ".toml");
         results::expect_plain_file(file);
         const fs::path origin = results::get_string(json, "file", where);
-        plan.scenarios.push_back(scenario::parse_scenario(base::read_text(file), origin));
+        const fs::path kept = scenario::kept_flight(file);
+        if (!kept.empty()) results::expect_plain_file(kept);
+        plan.scenarios.push_back(scenario::parse_scenario(base::read_text(file), origin, kept));
         plan.origins.push_back(origin);
     }
     for (Json::Value json : results::get_array(run, "cells", where)) {

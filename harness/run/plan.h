@@ -26,9 +26,12 @@ struct RunRequest {
     scenario::Overrides overrides;
     std::string device;
     std::string command_line;
+    std::optional<double> load_average;  ///< when the command began: before its own load
     bool resume = false;
     /// Methods fly at the knob values that a scenario keeps ([equal]) where nothing else sets them.
     bool kept_knobs = true;
+    /// Each cell waits for a debugger, and no time limit ends it.
+    bool wait_for_debugger = false;
 
     /// Whether anything in it says which cells are meant.
     [[nodiscard]] bool names_cells() const;

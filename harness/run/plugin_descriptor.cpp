@@ -196,6 +196,7 @@ std::vector<MethodInfo> read_descriptor(const PluginDescriptor& descriptor,
     for (std::size_t i = 0; i < descriptor.method_count; ++i) {
         methods.push_back(read_method(descriptor.methods[i], i));
         methods.back().plugin = plugin;
+        methods.back().compiled = line_of_text(descriptor.compiled, "how it was compiled");
         if (!ids.insert(methods.back().id).second) {
             refuse(fmt::format("it holds two methods with the id '{}'; give each its own",
                                methods.back().id));

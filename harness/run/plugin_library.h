@@ -29,14 +29,16 @@ struct MethodInfo {
     std::vector<ParamInfo> params;
     std::string quality_knob, claimed_bound;  ///< "" for none
     std::filesystem::path plugin;
+    std::string compiled;  ///< how its plugin was: LODBENCH_COMPILED there
 };
 
 /// One plugin file as it was found: its methods, or why it cannot be used (path, the loader's own
 /// words, found and expected, remedy).
 struct PluginListing {
     std::filesystem::path path;
-    std::vector<MethodInfo> methods;
+    std::vector<MethodInfo> methods;  ///< that are used
     std::string refusal;
+    std::vector<std::string> left_out;  ///< of each method that another plugin holds too: the words
 };
 
 /// Folders in the order of search: `extra` (--plugin-dir), LODBENCH_PLUGIN_PATH, then next to the
@@ -45,7 +47,9 @@ struct PluginListing {
     const std::vector<std::filesystem::path>& extra);
 
 /// Opens each *.so of the folders in a child process of its own, with a time limit: a plugin whose
-/// constructor aborts, loops or exits costs its own line. Two plugins with one id are both refused.
+/// constructor aborts, loops or exits costs its own line. Of two that hold one id, that of the
+/// earlier folder is used; in one folder, that which lodbench was built with or, of two such, the
+/// one that methods/CMakeLists.txt names first; else neither.
 [[nodiscard]] std::vector<PluginListing> list_plugins(
     const std::vector<std::filesystem::path>& folders);
 [[nodiscard]] PluginListing list_plugin(

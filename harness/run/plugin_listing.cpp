@@ -55,6 +55,7 @@ Json::Value to_json(const MethodInfo& method) {
     for (const ParamInfo& param : method.params) json["params"].append(to_json(param));
     json["quality_knob"] = method.quality_knob;
     json["claimed_bound"] = method.claimed_bound;
+    json["compiled"] = method.compiled;
     return json;
 }
 
@@ -89,6 +90,7 @@ MethodInfo read_method(const Json::Value& json, const std::string& where) {
     }
     method.quality_knob = results::get_string(json, "quality_knob", where);
     method.claimed_bound = results::get_string(json, "claimed_bound", where);
+    method.compiled = results::get_string(json, "compiled", where);
     return method;
 }
 
@@ -120,30 +122,64 @@ int tell(const fs::path& plugin, int listing, int output) {
     return base::write_all(listing, results::to_text(json)) ? 0 : 1;
 }
 
-/// An id belongs to the earliest folder that holds it. Two holders in that folder are both refused,
-/// for nothing tells which is meant. `folder_of` numbers the folder of each listing.
-void refuse_duplicates(std::vector<PluginListing>& listings,
-                       const std::vector<std::size_t>& folder_of) {
-    std::map<std::string, std::vector<std::size_t>> holders;
-    for (std::size_t i = 0; i < listings.size(); ++i) {
-        for (const MethodInfo& method : listings[i].methods) holders[method.id].push_back(i);
+/// Where the plugin stands among those that lodbench is built with; last for any other.
+std::size_t rank_of(const fs::path& plugin) {
+    constexpr std::string_view kOwn = LODBENCH_OWN_PLUGINS;  // ":full_grid:lindstrom:"
+    return kOwn.find(':' + plugin.stem().string() + ':');
+}
+
+/// A plugin that holds an id, and what decides whether it is the one that is used.
+struct Holder {
+    PluginListing* listing;
+    std::size_t folder;
+    std::size_t rank = rank_of(listing->path);
+    [[nodiscard]] bool goes_before(const Holder& other) const {
+        return std::pair(folder, rank) < std::pair(other.folder, other.rank);
     }
-    for (const auto& [id, held] : holders) {
-        if (held.size() < 2) continue;
-        const bool one_wins = folder_of[held[0]] != folder_of[held[1]];
-        for (std::size_t i = one_wins ? 1 : 0; i < held.size(); ++i) {
-            PluginListing& plugin = listings[held[i]];
-            const PluginListing& other = listings[held[i == 0 ? 1 : 0]];
-            plugin.refusal = fmt::format(
-                "plugin {} cannot be used: its method id '{}' is also held by {}{}; remove one of "
-                "the two",
-                plugin.path.string(), id, other.path.string(),
-                one_wins ? ", whose folder goes first" : "");
-            loader_log("{}", plugin.refusal);
+};
+
+std::string words_of_conflict(const std::string& id, const Holder& first, const Holder& other) {
+    const std::string held = fmt::format("method '{}' is held by two plugins: ", id);
+    const std::string first_path = first.listing->path.string();
+    const std::string other_path = other.listing->path.string();
+    if (!first.goes_before(other)) {
+        return held + fmt::format(
+                          "neither {} nor {} is used, for nothing tells which is meant; "
+                          "remove one, or give its method another id",
+                          first_path, other_path);
+    }
+    return held + fmt::format(
+                      "{} is used, for {}; {} is not; remove one, or give its method "
+                      "another id",
+                      first_path,
+                      first.folder < other.folder ? "its folder goes first"
+                                                  : "lodbench was built with it first",
+                      other_path);
+}
+
+void leave_out(PluginListing& listing, const std::string& id) {
+    std::erase_if(listing.methods, [&](const MethodInfo& method) { return method.id == id; });
+}
+
+/// `folder_of` numbers the folder of each listing.
+void settle_duplicates(std::vector<PluginListing>& listings,
+                       const std::vector<std::size_t>& folder_of) {
+    std::map<std::string, std::vector<Holder>> holders;
+    for (std::size_t i = 0; i < listings.size(); ++i) {
+        for (const MethodInfo& method : listings[i].methods) {
+            holders[method.id].push_back({&listings[i], folder_of[i]});
         }
     }
-    for (PluginListing& listing : listings) {
-        if (!listing.refusal.empty()) listing.methods.clear();
+    for (auto& [id, held] : holders) {
+        if (held.size() < 2) continue;
+        std::ranges::stable_sort(held, &Holder::goes_before);
+        for (std::size_t i = 1; i < held.size(); ++i) {
+            PluginListing& loser = *held[i].listing;
+            loser.left_out.push_back(words_of_conflict(id, held[0], held[i]));
+            loader_log("{}", loser.left_out.back());
+            leave_out(loser, id);
+        }
+        if (!held[0].goes_before(held[1])) leave_out(*held[0].listing, id);
     }
 }
 
@@ -220,7 +256,8 @@ std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
                                 {},
                                 fmt::format("plugin folder {} cannot be read: {}; correct "
                                             "--plugin-dir or LODBENCH_PLUGIN_PATH",
-                                            folder.string(), error.message())});
+                                            folder.string(), error.message()),
+                                {}});
             folder_of.push_back(number);
             continue;
         }
@@ -235,7 +272,7 @@ std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
             folder_of.push_back(number);
         }
     }
-    refuse_duplicates(listings, folder_of);
+    settle_duplicates(listings, folder_of);
     return listings;
 }
 
@@ -249,6 +286,7 @@ const MethodInfo& find_method(const std::vector<PluginListing>& plugins, const s
             known.insert(method.id);
         }
         if (!plugin.refusal.empty()) refusals += "; " + plugin.refusal;
+        for (const std::string& words : plugin.left_out) refusals += "; " + words;
     }
     throw InputError(fmt::format("{}: no method '{}' was found; known: {}{}", where, id,
                                  known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")),

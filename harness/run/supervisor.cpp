@@ -217,8 +217,15 @@ results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
     std::uint64_t beats = 0;
     auto last_beat = start;
     std::optional<SteadyClock::time_point> finished;
+    bool told = !spec.wait_for_debugger;
     while (!child.wait(kWatchInterval, reading.number())) {
         log.drain(reading.number());
+        if (!told && child.pid() != 0) {
+            told = true;
+            base::tell(
+                "{0} waits for a debugger as process {1}: gdb -p {1}, set breakpoints, continue",
+                spec.id, child.pid());
+        }
         if (base::interrupted()) {
             child.end();
             throw Interrupted();

@@ -131,7 +131,8 @@ std::filesystem::path existing_file(const Section& section, std::string_view key
     return path;
 }
 
-PathSpec read_path(Section& flight, const std::filesystem::path& folder) {
+PathSpec read_path(Section& flight, const std::filesystem::path& folder,
+                   const std::filesystem::path& kept) {
     PathSpec spec;
     spec.where = flight.where();
     spec.kind = read_kind(flight);
@@ -154,7 +155,7 @@ PathSpec read_path(Section& flight, const std::filesystem::path& folder) {
         case PathKind::recorded: {
             const auto file = flight.text("file");
             if (!file) flight.require("file", "write the CSV file of the recorded flight");
-            spec.recorded = existing_file(flight, "file", *file, folder);
+            spec.recorded = kept.empty() ? existing_file(flight, "file", *file, folder) : kept;
             break;
         }
     }

@@ -7,7 +7,9 @@
 namespace lodbench::scenario {
 
 /// Reads the keys that make a path; `kind` decides which. Relative files are relative to `folder`.
-[[nodiscard]] PathSpec read_path(Section& flight, const std::filesystem::path& folder);
+/// A recorded flight is `kept` where that is not empty.
+[[nodiscard]] PathSpec read_path(Section& flight, const std::filesystem::path& folder,
+                                 const std::filesystem::path& kept);
 
 /// Path of a file that must exist, relative ones under `folder`.
 [[nodiscard]] std::filesystem::path existing_file(const Section& section, std::string_view key,

@@ -163,7 +163,8 @@ void read_camera(Section& top, Scenario& scenario) {
     }
 }
 
-void read_flight(Section& top, const std::filesystem::path& folder, Scenario& scenario) {
+void read_flight(Section& top, const std::filesystem::path& folder,
+                 const std::filesystem::path& kept, Scenario& scenario) {
     auto flight = top.section("flight");
     if (!flight) top.require("flight", "write a table [flight] with kind = \"...\"");
     const auto frames = flight->integer("frames", 1, kMaxFrames);
@@ -171,7 +172,7 @@ void read_flight(Section& top, const std::filesystem::path& folder, Scenario& sc
     set(scenario.rate_hz, flight->number("rate_hz", {1e-3, 1e6}));
     set(scenario.warmup_frames, flight->integer("warmup_frames", 0, kMaxFrames));
     set(scenario.warmup_flies, flight->boolean("warmup_flies"));
-    scenario.path = read_path(*flight, folder);
+    scenario.path = read_path(*flight, folder, kept);
     flight->refuse_unknown();
     if (scenario.path.kind != PathKind::recorded || frames) return;
     const std::size_t rows = load_recorded(scenario.path.recorded).size();
@@ -333,6 +334,11 @@ void move_frames(std::vector<int>& frames, int from, int to) {
 }  // namespace
 
 Scenario parse_scenario(std::string_view text, const std::filesystem::path& file) {
+    return parse_scenario(text, file, {});
+}
+
+Scenario parse_scenario(std::string_view text, const std::filesystem::path& file,
+                        const std::filesystem::path& kept) {
     const toml::table table = terrain::parse_toml(text, file);
     const std::filesystem::path folder = file.parent_path();
     Section top(table, file, "");
@@ -347,19 +353,30 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
     read_name(top, file, scenario);
     read_terrain(top, folder, scenario);
     read_camera(top, scenario);
-    read_flight(top, folder, scenario);
+    read_flight(top, folder, kept, scenario);
     read_measure_and_run(top, scenario);
     read_equal(top, scenario);
     read_methods(top, scenario);
     return scenario;
 }
 
+std::filesystem::path place_of_kept_flight(const std::filesystem::path& file) {
+    return std::filesystem::path(file).replace_extension(".flight.csv");
+}
+
+std::filesystem::path kept_flight(const std::filesystem::path& file) {
+    const std::filesystem::path kept = place_of_kept_flight(file);
+    std::error_code none;
+    return std::filesystem::is_regular_file(kept, none) ? kept : std::filesystem::path();
+}
+
 Scenario load_scenario(const std::filesystem::path& file) {
+    const std::filesystem::path kept = kept_flight(file);
     const std::string text = terrain::read_toml_text(file);
     // What ends a process cannot be caught: tried in a child first. A refusal is met again below,
     // in words.
     const base::Answer rehearsal = base::run_isolated(kRehearsalSeconds, [&] {
-        (void)parse_scenario(text, file);
+        (void)parse_scenario(text, file, kept);
         return std::string();
     });
     if (rehearsal.ending == base::Ending::died || rehearsal.ending == base::Ending::timed_out) {
@@ -368,7 +385,7 @@ Scenario load_scenario(const std::filesystem::path& file) {
                         "nested, simplify it",
                         file.string(), rehearsal.text));
     }
-    return parse_scenario(text, file);
+    return parse_scenario(text, file, kept);
 }
 
 void apply(const Overrides& overrides, Scenario& scenario) {

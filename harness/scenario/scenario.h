@@ -86,8 +86,18 @@ struct Overrides {
 /// lists the known ones.
 [[nodiscard]] Scenario parse_scenario(std::string_view text, const std::filesystem::path& file);
 
+/// The same for what a results folder keeps: `kept` is the copy of its recorded flight, or empty.
+[[nodiscard]] Scenario parse_scenario(std::string_view text, const std::filesystem::path& file,
+                                      const std::filesystem::path& kept);
+
+/// Where the copy of a recorded flight lies beside the scenario's file: NAME.flight.csv.
+[[nodiscard]] std::filesystem::path place_of_kept_flight(const std::filesystem::path& file);
+/// The same where there is one; else empty.
+[[nodiscard]] std::filesystem::path kept_flight(const std::filesystem::path& file);
+
 /// The same from a file, parsed in a child process first, so that a parser that dies costs a
-/// message only.
+/// message only. A recorded flight that is kept beside it goes before the file that it names: so a
+/// scenario of a results folder is flown as it was.
 [[nodiscard]] Scenario load_scenario(const std::filesystem::path& file);
 
 /// Where the number of frames changes, frames that the scenario names move along. Throws InputError

@@ -1,5 +1,7 @@
 #include "terrain/void_fill.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
@@ -112,6 +114,15 @@ std::uint64_t fill_voids(std::span<float> heights, int rows, int columns, glm::d
         Pass(heights, rows, columns, spacing).run(none);
     }
     return found;
+}
+
+std::string warning_of_voids(const TerrainInfo& info) {
+    const double share = double(info.void_count) / (double(info.rows) * double(info.columns));
+    if (share < kManyVoids) return {};
+    return fmt::format(
+        "terrain '{}': {:.3g} % of its samples ({}) had no data and were filled from their "
+        "neighbours: what is measured there is no terrain",
+        info.name, 100 * share, info.void_count);
 }
 
 }  // namespace lodbench::terrain

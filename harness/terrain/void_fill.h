@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
+#include <string>
+
+#include "api/terrain.h"
 
 namespace lodbench::terrain {
 
@@ -16,5 +19,11 @@ namespace lodbench::terrain {
 /// takes the filled ones as valid; two passes always suffice. A grid without a valid sample is left
 /// as it is. `spacing` is metres between columns (x) and rows (y).
 std::uint64_t fill_voids(std::span<float> heights, int rows, int columns, glm::dvec2 spacing);
+
+/// Share of a terrain's samples without data from which on it is said.
+inline constexpr double kManyVoids = 0.01;
+
+/// What to say of a terrain of which that share or more was filled; "" of any other.
+[[nodiscard]] std::string warning_of_voids(const TerrainInfo& info);
 
 }  // namespace lodbench::terrain

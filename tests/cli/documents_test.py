@@ -6,13 +6,14 @@ usage: documents_test.py SOURCE_DIR LODBENCH_BINARY
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1)).resolve()
-BINARY = sys.argv.pop(1)
+BINARY = str(pathlib.Path(sys.argv.pop(1)).resolve())
 PAGES = {path: path.read_text() for path in
          [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *sorted((SOURCE / "docs").glob("*.md"))]}
 
@@ -89,6 +90,36 @@ class Documents(unittest.TestCase):
                     self.assertTrue((out / name).exists(), name)
         rows = re.findall(r"^\| (`[^|]*`) \|", page("docs/results.md"), re.MULTILINE)
         self.assertEqual(sorted(re.findall(r"`(\w+)`", " ".join(rows))), sorted(cell))
+
+    def test_snippets_of_the_results_page_run_on_the_tables_of_a_sweep(self):
+        scenario = ('[terrain]\nsynthetic = "ridged"\nrows = 65\ncolumns = 65\nspacing = 10\n[viewport]\nwidth = 64\n'
+                    'height = 48\n[flight]\nkind = "line"\nframes = 2\nwarmup_frames = 0\nstart = [320, 50, 400]\n'
+                    'end = [320, 300, 400]\npitch = -30\n[run]\nrepetitions = 1\n')
+        system = shutil.which("python3", path="/usr/bin") or sys.executable  # whose modules are those of packages
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "s.toml").write_text(scenario)
+            for command in (["sweep", "s.toml", "--method", "lindstrom", "--method", "full-grid", "--points", "3"],
+                            ["report", "sweep", "--csv", "tables"]):
+                out = ["-o", "sweep" if command[0] == "sweep" else "page.html"]
+                done = subprocess.run([BINARY, *command, *out], cwd=folder, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, done.stderr)
+            snippets = re.findall(r"^```(python|gnuplot)\n(.*?)^```", page("docs/results.md"), re.MULTILINE | re.DOTALL)
+            self.assertEqual(sorted(language for language, _ in snippets), ["gnuplot", "python", "python"])
+            for language, code in snippets:
+                with self.subTest(language=language, code=code):
+                    if language == "gnuplot" and shutil.which("gnuplot") is None:
+                        self.skipTest("no gnuplot")
+                    if "pandas" in code and subprocess.run([system, "-c", "import pandas"],
+                                                           capture_output=True).returncode != 0:
+                        self.skipTest("no pandas")
+                    program = ["gnuplot", "-"] if language == "gnuplot" else [system, "-"]
+                    done = subprocess.run(program, input=code, cwd=folder, capture_output=True, text=True)
+                    self.assertEqual((done.returncode, done.stderr), (0, ""))
+                    if language == "python":
+                        self.assertIn("full-grid", done.stdout)
+                    else:
+                        self.assertIn("</svg>", (folder / "error.svg").read_text())
 
     def test_pages_point_at_files_that_exist(self):
         linked = set()

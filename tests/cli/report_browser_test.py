@@ -4,6 +4,7 @@ Chromium, which nothing else does; exit status 77 without one.
 usage: report_browser_test.py LODBENCH_BINARY
 """
 
+import base64
 import pathlib
 import shutil
 import sys
@@ -58,6 +59,25 @@ class Shown(unittest.TestCase):
                     self.assertGreater(figures, 10)
                     self.assertEqual((canvases, blank), (figures, 0))
                     self.check_silence()
+
+    def test_on_paper_tables_fit_and_plots_stay_whole(self):
+        paper = 718  # pixels between the margins of A4
+        for scheme in ("light", "dark"):
+            self.browser.open(self.url, paper, scheme)
+            self.browser.call("Emulation.setEmulatedMedia", media="print",
+                              features=[{"name": "prefers-color-scheme", "value": scheme}])
+            clipped, split, canvases, background = self.browser.evaluate(
+                "[[...document.querySelectorAll('.scroll, table, .legend')].filter((e) => "
+                "e.getBoundingClientRect().right > innerWidth || e.scrollHeight > e.clientHeight + 1 "
+                "&& getComputedStyle(e).overflowY !== 'visible').length, "
+                "[...document.querySelectorAll('figure, tr')].filter((e) => "
+                "getComputedStyle(e).breakInside !== 'avoid').length, "
+                "[...document.querySelectorAll('canvas')].filter((e) => e.offsetParent).length, "
+                "getComputedStyle(document.body).backgroundColor]")
+            self.assertEqual((clipped, split, canvases), (0, 0, 0))
+            self.assertEqual(background, "rgb(253, 253, 252)")
+        pdf = self.browser.call("Page.printToPDF", printBackground=True)["data"]
+        self.assertTrue(base64.b64decode(pdf).startswith(b"%PDF"))
 
     def test_an_axis_that_counts_is_linear_with_whole_ticks(self):
         self.browser.open(self.url, 1440, "light")

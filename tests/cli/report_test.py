@@ -16,6 +16,7 @@ import statistics
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 from report_page import (FRAMES, Page, cell, economy, flight, frames, match, needed, png, report, searched, value_of,
                          write_folder)
@@ -212,6 +213,69 @@ class Report(unittest.TestCase):
         page, text = self.make(write_folder(self.root / "matched", [cell("m", method="m", params={"tau": 1})],
                                             match=match(matched)))
         self.assertIn("<title>m tau=1: ", text[text.index('aria-label="Error against frame time'):])
+
+    def figure(self, name, *more):
+        out = self.root / f"{name}.svg"
+        status, output = report(BINARY, self.root / "run", "--figure", name, "-o", out, *more)
+        self.assertEqual(status, 0, output)
+        self.assertIn(f"figure    {out}", output)
+        return out.read_text()
+
+    def test_a_figure_is_an_svg_of_its_own(self):
+        cells = [cell(f"m{tau}", method="m&m", params={"tau": tau}, time=10 / tau, error=tau) for tau in (0.5, 2)]
+        cells += [cell("other", method="other", time=20)]
+        write_folder(self.root / "run", cells)
+        svg = self.figure("trade-time")
+        space = "{http://www.w3.org/2000/svg}"
+        root = xml.etree.ElementTree.fromstring(svg)
+        self.assertEqual(root.tag, space + "svg")
+        self.assertEqual([float(n) for n in root.get("viewBox").split()],
+                         [0, 0, float(root.get("width")), float(root.get("height"))])
+        texts = ["".join(e.itertext()) for e in root.iter(space + "text")]
+        for words in ("Error against frame time", "mean frame time, ms", "pixel error P99.9, px", "m&m", "other",
+                      "Pareto front", "0.5", "2"):
+            self.assertIn(words, texts)
+        # All of it within its frame.
+        for e in root.iter(space + "text"):
+            if e.get("y"):
+                self.assertLess(float(e.get("y")), float(root.get("height")))
+        # Nothing that another program would have to fetch or does not know.
+        for foreign in ("var(", "href", "url(", "@import", "<script", "foreignObject"):
+            self.assertNotIn(foreign, svg)
+        style = root.find(space + "style").text
+        used = {c for e in root.iter() for c in e.get("class", "").split()}
+        self.assertTrue({"c0", "c1", "ink", "f", "s", "ring"} <= used)
+        for name in used - {"d0", "o0"}:
+            self.assertRegex(style, rf"\.{name}\b")
+        self.assertEqual(svg, self.figure("set1-trade-time"))
+        bars = xml.etree.ElementTree.fromstring(self.figure("percentiles"))
+        self.assertTrue(list(bars.iter(space + "rect")))
+
+    def test_a_figure_is_refused_with_what_there_is_and_how_to_convert(self):
+        write_folder(self.root / "run", [cell("a"), cell("b", scenario="hills")])
+        def refused(*more):
+            status, output = report(BINARY, self.root / "run", *more)
+            self.assertEqual(status, 2, output)
+            return output
+        self.assertIn("--figure moon: there is no such plot; the report has:\n  set1-trade-time", refused("--figure", "moon"))
+        self.assertIn("several scenarios have that plot", refused("--figure", "trade-time"))
+        self.assertIn("give --out fig.svg, then convert it: rsvg-convert -f pdf -o fig.pdf fig.svg",
+                      refused("--figure", "set1-trade-time", "-o", "fig.pdf"))
+        self.assertIn("a figure is an SVG; give --out fig.svg", refused("--figure", "set1-trade-time", "-o", "fig.png"))
+        self.assertIn("--csv", refused("--figure", "set1-trade-time", "--csv", self.root / "t"))
+
+    def test_on_paper_no_plot_is_split_and_no_table_cut(self):
+        _, text = self.make(write_folder(self.root / "run", self.cells()))
+        style = text[text.index("<style>"):text.index("</style>")]
+        paper = style[style.index("@media print"):]
+        rules = dict(re.findall(r"^  ([^{}\n]+) \{ ([^{}\n]+) \}$", paper, re.MULTILINE))
+        self.assertIn("figure", next(k for k, v in rules.items() if "break-inside: avoid" in v).split(", "))
+        self.assertIn("tr", next(k for k, v in rules.items() if "break-inside: avoid" in v).split(", "))
+        self.assertIn("overflow: visible", rules[".scroll, pre, .warnings ul"])
+        self.assertIn("max-height: none", rules[".scroll, pre, .warnings ul"])
+        self.assertIn("white-space: normal", rules["th, td, thead th, td[data-field]"])
+        # Ink on paper, whatever the screen's scheme.
+        self.assertNotRegex(style, r"@media \(prefers-color-scheme: dark\)")
 
     def test_a_csv_field_is_no_formula_and_numbers_stay_numbers(self):
         failures = ["=1+1", "+cmd", "-2+3", "@SUM(A1)", "-1.5", "+2", "-"]

@@ -112,34 +112,85 @@ TEST_F(ResumeTrust, run_json_says_when_the_run_was) {
     EXPECT_TRUE(run_.isMember("cpu_quota_cores"));
 }
 
-TEST(ResumeFlight, a_recorded_flight_that_changed_is_refused_with_both_checksums) {
-    const ScratchFolder scratch;
-    const fs::path flight = scratch.path() / "flight.csv";
-    const std::string rows = "frame,x,y,z,heading,pitch,roll\n0,20,20,300,0,-40,0\n";
-    std::ofstream(flight) << rows << "1,30,20,300,0,-40,0\n";
-    const fs::path file = scratch.path() / "recorded.toml";
-    std::ofstream(file) << "[terrain]\nsynthetic = \"plane\"\nrows = 17\ncolumns = 17\n"
-                           "spacing = 10\n[viewport]\nwidth = 64\nheight = 48\n[flight]\n"
-                           "kind = \"recorded\"\nfile = \"flight.csv\"\nwarmup_frames = 0\n"
-                           "[run]\nrepetitions = 2\n";
-    const fs::path out = scratch.path() / "out";
-    const std::vector<std::string> resume = {"run", "--resume", "--out", out.string()};
-    ASSERT_EQ(run_lodbench({"run", file.string(), "--out", out.string(), "--method", "template"},
-                           scratch.path())
-                  .status,
-              0);
-    const std::string lines = text_of(out / "cells.jsonl");
-    fs::resize_file(out / "cells.jsonl", lines.find('\n') + 1);  // as if killed
-    std::ofstream(flight) << rows << "1,40,20,300,0,-40,0\n";
-    const Finished refused = run_lodbench(resume, scratch.path());
-    EXPECT_EQ(refused.status, 2) << refused.output;
-    EXPECT_THAT(refused.output,
-                HasSubstr("flight.csv: the flight has changed since the run began"));
-    EXPECT_EQ(cells_of(out).size(), 1U);
-    std::ofstream(flight) << rows << "1,30,20,300,0,-40,0\n";
-    const Finished resumed = run_lodbench(resume, scratch.path());
-    EXPECT_EQ(resumed.status, 0) << resumed.output;
-    EXPECT_EQ(cells_of(out).size(), 2U);
+/// A run over a recorded flight, of which one cell is finished and one is left.
+class ResumeFlight : public testing::Test {
+protected:
+    void SetUp() override {
+        write_flight(flight_, 30);
+        std::ofstream(scratch_.path() / "recorded.toml")
+            << "[terrain]\nsynthetic = \"plane\"\nrows = 17\ncolumns = 17\n"
+               "spacing = 10\n[viewport]\nwidth = 64\nheight = 48\n[flight]\n"
+               "kind = \"recorded\"\nfile = \"flight.csv\"\nwarmup_frames = 0\n"
+               "[run]\nrepetitions = 2\n";
+        const Finished flown = fly((scratch_.path() / "recorded.toml").string(), out_);
+        ASSERT_EQ(flown.status, 0) << flown.output;
+        const std::string lines = text_of(out_ / "cells.jsonl");
+        fs::resize_file(out_ / "cells.jsonl", lines.find('\n') + 1);  // as if killed
+    }
+    static void write_flight(const fs::path& file, int x) {
+        std::ofstream(file) << "frame,x,y,z,heading,pitch,roll\n0,20,20,300,0,-40,0\n1," << x
+                            << ",20,300,0,-40,0\n";
+    }
+    Finished fly(const std::string& scenario, const fs::path& out) const {
+        return run_lodbench({"run", scenario, "--out", out.string(), "--method", "template"},
+                            scratch_.path());
+    }
+    Finished resume() const {
+        return run_lodbench({"run", "--resume", "--out", out_.string()}, scratch_.path());
+    }
+    void expect_refused(const std::string& file) const {
+        const Finished refused = resume();
+        EXPECT_EQ(refused.status, 2) << refused.output;
+        EXPECT_THAT(refused.output,
+                    HasSubstr(file + ": the flight has changed since the run began"));
+        EXPECT_EQ(cells_of(out_).size(), 1U);
+    }
+    void expect_resumed() const {
+        const Finished resumed = resume();
+        EXPECT_EQ(resumed.status, 0) << resumed.output;
+        EXPECT_EQ(cells_of(out_).size(), 2U);
+    }
+
+    const ScratchFolder scratch_;
+    const fs::path flight_ = scratch_.path() / "flight.csv";
+    const fs::path out_ = scratch_.path() / "out";
+    const fs::path kept_ = out_ / "scenarios" / "recorded.flight.csv";
+};
+
+TEST_F(ResumeFlight, a_recorded_flight_that_changed_is_refused_with_both_checksums) {
+    write_flight(flight_, 40);
+    expect_refused("flight.csv");
+    write_flight(flight_, 30);
+    expect_resumed();
+}
+
+TEST_F(ResumeFlight, goes_on_with_the_copy_that_the_folder_keeps_where_the_file_is_gone) {
+    EXPECT_EQ(text_of(kept_), text_of(flight_));
+    fs::remove(flight_);
+    expect_resumed();
+}
+
+TEST_F(ResumeFlight, a_copy_that_changed_or_is_a_link_is_refused) {
+    write_flight(kept_, 40);
+    expect_refused("recorded.flight.csv");
+    fs::remove(kept_);
+    fs::create_symlink(flight_, kept_);
+    const Finished refused = resume();
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.output, HasSubstr("recorded.flight.csv: this is no plain file"));
+    fs::remove(kept_);
+    expect_resumed();  // which copies it anew
+    EXPECT_EQ(text_of(kept_), text_of(flight_));
+}
+
+TEST_F(ResumeFlight, a_results_folder_is_flown_again_from_what_it_keeps) {
+    fs::remove(flight_);
+    const fs::path again = scratch_.path() / "again";
+    const Finished flown = fly((out_ / "scenarios" / "recorded.toml").string(), again);
+    ASSERT_EQ(flown.status, 0) << flown.output;
+    EXPECT_EQ(text_of(again / "flights" / "recorded.json"),
+              text_of(out_ / "flights" / "recorded.json"));
+    EXPECT_EQ(text_of(again / "scenarios" / "recorded.flight.csv"), text_of(kept_));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ MAY_INCLUDE = {
     "picture": {"api", "base", "measure"},
     "report": {"api", "base", "measure", "results", "picture"},
     "run": {"api", "base", "common", "gl", "platform", "terrain", "scenario", "measure", "results", "picture"},
-    "conformance": {"api", "base", "common", "gl", "measure", "run"},
+    "conformance": {"api", "base", "common", "gl", "measure", "results", "run"},
 }
 
 

@@ -103,14 +103,16 @@ TEST_F(TerrainWarnings, of_a_run_stand_on_the_terminal_and_in_its_results_once) 
 
 TEST_F(TerrainWarnings, of_many_voids_outlive_an_import) {
     write_raster(100, "no_data = -9999\n");
-    const std::string words = "34.6 % of its samples (100) had no data and were filled";
+    const std::string words =
+        "terrain 'a': 34.6 % of its samples (100) had no data and were filled from their "
+        "neighbours: what is measured there is no terrain";
     EXPECT_THAT(terrain({"import", file("a.raw"), "-o", file("a.tiles")}).output, HasSubstr(words));
     EXPECT_THAT(terrain({"info", file("a.tiles")}).output, HasSubstr(words));
     const Finished finished = run("a.tiles");
     ASSERT_EQ(finished.status, 0) << finished.output;
-    EXPECT_THAT(finished.output, HasSubstr("had no data and were filled"));
+    EXPECT_THAT(finished.output, HasSubstr("warning: " + words));
     ASSERT_EQ(warnings_of_run().size(), 1U);
-    EXPECT_THAT(warnings_of_run()[0].asString(), HasSubstr("had no data and were filled"));
+    EXPECT_EQ(warnings_of_run()[0].asString(), words) << "as `terrain info` has it";
 }
 
 }  // namespace

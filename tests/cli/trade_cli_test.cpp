@@ -4,8 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numeric>
+#include <sstream>
 
+#include "cli/frames_csv.h"
 #include "cli/run_lodbench.h"
 
 namespace lodbench::test {
@@ -16,16 +22,21 @@ using Arguments = std::vector<std::string>;
 
 class Trade : public testing::Test {
 protected:
-    Finished lodbench(const std::string& command, const Arguments& more) {
-        const fs::path file = folder_.path() / "small.toml";
+    fs::path write_scenario() {
+        fs::path file = folder_.path() / "small.toml";
         std::ofstream(file) << "name = \"small\"\n[terrain]\n"
                             << terrain_
                             << "[viewport]\nwidth = 96\nheight = 72\n"
-                               "[flight]\nkind = \"line\"\nframes = 4\nwarmup_frames = 1\n"
-                               "start = [640, 100, 400]\nend = [640, 600, 400]\npitch = -30\n"
-                               "[measure]\nevery = 2\nshots = [0]\n"
-                            << measure_ << "[run]\nrepetitions = 1\n";
-        Arguments arguments = {command, file.string()};
+                               "[flight]\nkind = \"line\"\nwarmup_frames = 1\n"
+                            << frames_
+                            << "start = [640, 100, 400]\nend = [640, 600, 400]\npitch = -30\n"
+                               "[measure]\nshots = [0]\n"
+                            << fmt::format("every = {}\n", every_) << measure_
+                            << "[run]\nrepetitions = 1\n";
+        return file;
+    }
+    Finished lodbench(const std::string& command, const Arguments& more) {
+        Arguments arguments = {command, write_scenario().string()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_lodbench(arguments, folder_.path(), [this] {
             dup2(open((folder_.path() / "errors").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), 2);
@@ -42,6 +53,8 @@ protected:
 
     ScratchFolder folder_;
     std::string terrain_ = "synthetic = \"ridged\"\nrows = 129\ncolumns = 129\nspacing = 10\n";
+    std::string frames_ = "frames = 4\n";
+    int every_ = 2;
     std::string measure_;  ///< more of that table
 };
 
@@ -182,6 +195,129 @@ TEST_F(Trade, match_explains_the_outcomes_that_occur_and_gives_no_hypervolume) {
     EXPECT_THAT(text("far", {"--triangles", "100000000", "--probes", "3"}), HasSubstr(unreachable));
     EXPECT_THAT(text("jump", {"--error", "2px", "--tolerance", "0.01", "--probes", "3"}),
                 HasSubstr(between));
+}
+
+/// The row of the search's table, by its columns.
+std::map<std::string, std::string> search_row(const std::string& text, const std::string& method) {
+    const auto fields = [](const std::string& line) {
+        std::vector<std::string> found;
+        std::istringstream stream(line);
+        for (std::string field; std::getline(stream, field, '|');) {
+            const std::size_t begin = field.find_first_not_of(' ');
+            if (begin == field.npos) continue;
+            found.push_back(field.substr(begin, field.find_last_not_of(' ') - begin + 1));
+        }
+        return found;
+    };
+    std::istringstream stream(text);
+    std::vector<std::string> names;
+    for (std::string line; std::getline(stream, line);) {
+        if (line.starts_with("| method ") && names.empty()) names = fields(line);
+        if (names.empty() || !line.starts_with("| " + method + " ")) continue;
+        std::map<std::string, std::string> row;
+        const auto values = fields(line);
+        for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) {
+            row[names[i]] = values[i];
+        }
+        return row;
+    }
+    ADD_FAILURE() << "no row of " << method << " in\n" << text;
+    return {};
+}
+
+/// Of the frames that have a figure in the column.
+std::vector<double> column_of(const fs::path& out, const std::string& column) {
+    std::vector<double> values;
+    for (const auto& entry : fs::directory_iterator(out / "frames")) {
+        for (const FrameTexts& row : read_frames_csv(entry.path())) {
+            if (!row.at(column).empty()) values.push_back(std::stod(row.at(column)));
+        }
+    }
+    return values;
+}
+
+TEST_F(Trade, what_match_prints_is_what_its_frames_give) {
+    // Frame 1 is measured for the economy alone, and is in no figure; frame 2 by `every` too.
+    measure_ = "economy = [1, 2]\n";
+    const auto figures_of = [&](const std::string& name, const Arguments& target) {
+        Arguments arguments = {"--method", "lindstrom", "--out", out(name), "--probes", "5"};
+        arguments.insert(arguments.end(), target.begin(), target.end());
+        const Finished finished = lodbench("match", arguments);
+        EXPECT_EQ(finished.status, 0) << errors();
+        EXPECT_THAT(text_of(fs::path(out(name)) / "match.md"), HasSubstr(" flown |"));
+        return search_row(finished.output, "lindstrom");
+    };
+    const auto mean = [](const std::vector<double>& values) {
+        return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+    };
+    const auto six_digits = [](double value) { return fmt::format("{:.6g}", value); };
+
+    const auto greatest = figures_of("max", {"--error", "3", "--metric", "max"});
+    const std::vector<double> errors_px = column_of(out("max"), "pixel_max_px");
+    EXPECT_EQ(errors_px.size(), 2U) << "the frames that `every` names";
+    EXPECT_EQ(greatest.at("flown"), six_digits(*std::ranges::max_element(errors_px)));
+    EXPECT_EQ(greatest.at("achieved"), greatest.at("flown"));
+    const Json::Value economy = cells_of(out("max")).at(0)["economy"];
+    ASSERT_EQ(economy.size(), 1U);
+    EXPECT_EQ(economy[0]["frame"].asInt(), 2);
+
+    const auto triangles = figures_of("triangles", {"--triangles", "2000"});
+    EXPECT_EQ(triangles.at("flown"), six_digits(mean(column_of(out("triangles"), "triangles"))));
+    EXPECT_EQ(triangles.at("achieved"), triangles.at("flown"));
+
+    // Times differ from flight to flight: the final flight's are those of its frames.
+    const auto times = figures_of("times", {"--frame-ms", "2"});
+    EXPECT_EQ(times.at("flown"), six_digits(mean(column_of(out("times"), "wall_ms"))));
+}
+
+TEST_F(Trade, what_match_prints_of_a_percentile_is_that_of_its_one_measured_frame) {
+    // Over several frames all their pixels count together, and lie between those of each frame.
+    for (const auto& [name, every] : {std::pair("one", 4), {"two", 2}}) {
+        every_ = every;
+        const Finished finished =
+            lodbench("match", {"--method", "lindstrom", "--error", "2", "--out", out(name)});
+        ASSERT_EQ(finished.status, 0) << errors();
+        const auto row = search_row(finished.output, "lindstrom");
+        EXPECT_EQ(row.at("achieved"), row.at("flown"));
+        EXPECT_EQ(row.at("outcome"), "met");
+        const std::vector<double> frames = column_of(out(name), "pixel_p999_px");
+        ASSERT_EQ(frames.size(), std::size_t(4 / every));
+        if (every == 4) {
+            EXPECT_EQ(row.at("flown"), fmt::format("{:.6g}", frames[0]));
+        }
+        const double flown = std::stod(row.at("flown"));
+        EXPECT_GE(flown, std::ranges::min(frames) * (1 - 1e-5));
+        EXPECT_LE(flown, std::ranges::max(frames) * (1 + 1e-5));
+    }
+}
+
+TEST_F(Trade, match_says_where_its_search_stands_and_what_may_be_left) {
+    const Finished finished =
+        lodbench("match", {"--method", "lindstrom", "--method", "pgm", "--probes", "3",
+                           "--triangles", "2000", "--out", out()});
+    ASSERT_EQ(finished.status, 0) << errors();
+    const std::string told = errors();
+    EXPECT_THAT(told, HasSubstr("[1/2] lindstrom: probe 1 of at most 3: tau = 1 gives "));
+    EXPECT_THAT(told, HasSubstr("[2/2] pgm: probe 1 of at most 3: grid = "));
+    const std::string line = told.substr(told.find("[1/2] lindstrom: probe 1"));
+    EXPECT_THAT(line.substr(0, line.find('\n')),
+                testing::ContainsRegex(", at most [0-9]+:[0-9][0-9] of searching left$"));
+}
+
+TEST_F(Trade, match_redraws_a_line_on_a_terminal_while_a_probe_flies) {
+    // `script` gives the command a terminal. Long flights, so that there is something to see.
+    if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
+    frames_ = "frames = 400\n";
+    write_scenario();
+    const std::string command = fmt::format(
+        "cd '{}' && script -qec '{} match small.toml --method full-grid --method lindstrom "
+        "--probes "
+        "2 --triangles 2000 --out terminal' shown >/dev/null 2>&1 </dev/null",
+        folder_.path().string(), LODBENCH_BINARY);
+    ASSERT_EQ(std::system(command.c_str()), 0) << text_of(folder_.path() / "shown");
+    EXPECT_THAT(text_of(folder_.path() / "shown"),
+                testing::ContainsRegex("\r.\\[K\\[1/1\\] lindstrom: probe [12] of at most 2: "
+                                       "[0-9]+ %, at most [0-9]+:[0-9][0-9] of searching left"));
 }
 
 TEST_F(Trade, sweep_names_the_report_but_not_in_its_json) {

@@ -2,4 +2,5 @@
 
 extern "C"
     __attribute__((visibility("default"))) constexpr lodbench::PluginDescriptor lodbench_plugin = {
-        lodbench::kAbi, sizeof(lodbench::PluginDescriptor), "another compiler", nullptr, 0, 0};
+        lodbench::kAbi, sizeof(lodbench::PluginDescriptor), "another compiler", nullptr, 0, 0,
+        nullptr};

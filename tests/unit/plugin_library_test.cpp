@@ -1,6 +1,7 @@
 // Listing plugins and checking settings: the words of each refusal.
 
 #include <dlfcn.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,26 +53,84 @@ TEST(PluginLibrary, a_constructor_that_prints_does_not_disturb_the_listing) {
 
 TEST(PluginLibrary, of_two_plugins_with_one_id_that_of_the_earlier_folder_is_used) {
     const auto listings =
-        list_plugins({broken("healthy").parent_path(), broken("duplicate").parent_path()});
+        list_plugins({broken("duplicate").parent_path(), broken("healthy").parent_path()});
     ASSERT_EQ(listings.size(), 2U);
-    EXPECT_EQ(listings[0].refusal, "");
-    EXPECT_EQ(listings[0].methods.size(), 1U);
-    EXPECT_THAT(listings[1].refusal,
-                HasSubstr("its method id 'healthy' is also held by " + listings[0].path.string()));
+    ASSERT_EQ(listings[0].methods.size(), 1U);
+    EXPECT_TRUE(listings[0].left_out.empty());
     EXPECT_TRUE(listings[1].methods.empty());
+    EXPECT_EQ(listings[1].refusal, "");
+    EXPECT_THAT(
+        listings[1].left_out,
+        testing::ElementsAre(fmt::format(
+            "method 'healthy' is held by two plugins: {} is used, for its folder goes first; "
+            "{} is not; remove one, or give its method another id",
+            listings[0].path.string(), listings[1].path.string())));
+    EXPECT_EQ(find_method(listings, "healthy", "here").plugin, listings[0].path);
 }
 
-TEST(PluginLibrary, two_plugins_with_one_id_in_one_folder_are_both_refused_and_name_each_other) {
-    const test::TemporaryFolder folder;
-    for (const char* name : {"healthy", "duplicate"}) {
-        std::filesystem::copy_file(broken(name), folder.path() / broken(name).filename());
+/// A folder with copies of the plugin of the method `healthy` under these names.
+class Copies {
+public:
+    Copies(std::initializer_list<const char*> names) {
+        for (const char* name : names) {
+            std::filesystem::copy_file(broken("healthy"), path(name));
+        }
     }
-    const auto listings = list_plugins({folder.path()});
+    [[nodiscard]] std::filesystem::path path(const std::string& name) const {
+        return std::filesystem::canonical(folder_.path()) / (name + ".so");
+    }
+    [[nodiscard]] std::vector<PluginListing> listings() const {
+        return list_plugins({folder_.path()});
+    }
+
+private:
+    test::TemporaryFolder folder_;
+};
+
+TEST(PluginLibrary, of_two_unknown_plugins_with_one_id_in_one_folder_neither_is_used) {
+    const Copies copies{"mine", "yours"};
+    const auto listings = copies.listings();
     ASSERT_EQ(listings.size(), 2U);
-    EXPECT_THAT(listings[0].refusal,
-                HasSubstr("its method id 'healthy' is also held by " + listings[1].path.string()));
-    EXPECT_THAT(listings[1].refusal, HasSubstr(listings[0].path.string()));
     EXPECT_TRUE(listings[0].methods.empty() && listings[1].methods.empty());
+    try {
+        (void)find_method(listings, "healthy", "here");
+        FAIL() << "a method was found";
+    } catch (const InputError& error) {
+        EXPECT_THAT(
+            error.what(),
+            HasSubstr(fmt::format("held by two plugins: neither {} nor {} is used, for "
+                                  "nothing tells which is meant",
+                                  copies.path("mine").string(), copies.path("yours").string())));
+    }
+}
+
+TEST(PluginLibrary, a_newcomer_to_a_folder_does_not_take_the_place_of_lodbench_s_own) {
+    // By their names, the first of which goes before the others in their order.
+    const Copies copies{"a_newcomer", "lindstrom", "persistent_grid"};
+    const auto listings = copies.listings();
+    ASSERT_EQ(listings.size(), 3U);
+    EXPECT_EQ(find_method(listings, "healthy", "here").plugin, copies.path("lindstrom"));
+    for (const auto& [loser, name] : {std::pair(0, "a_newcomer"), {2, "persistent_grid"}}) {
+        EXPECT_TRUE(listings[std::size_t(loser)].methods.empty());
+        ASSERT_EQ(listings[std::size_t(loser)].left_out.size(), 1U);
+        EXPECT_THAT(
+            listings[std::size_t(loser)].left_out[0],
+            HasSubstr(fmt::format("{} is used, for lodbench was built with it first; {} is not",
+                                  copies.path("lindstrom").string(), copies.path(name).string())));
+    }
+}
+
+TEST(PluginLibrary, what_one_plugin_loses_to_another_does_not_cost_its_other_methods) {
+    const auto listings = list_plugins({broken("takes_an_id").parent_path(), LODBENCH_PLUGINS});
+    EXPECT_EQ(find_method(listings, "static-patches", "here").plugin, broken("takes_an_id"));
+    EXPECT_EQ(find_method(listings, "hybrid-patches", "here").plugin,
+              LODBENCH_PLUGINS "/hybrid_patches.so");
+}
+
+TEST(PluginLibrary, tells_how_the_compiler_was_called) {
+    EXPECT_EQ(list_plugin(broken("healthy")).methods.at(0).compiled, LODBENCH_COMPILED);
+    EXPECT_THAT(list_plugin(broken("compiled_otherwise")).methods.at(0).compiled,
+                testing::StartsWith("not optimised"));
 }
 
 TEST(PluginLibrary, one_folder_named_twice_is_no_duplicate) {

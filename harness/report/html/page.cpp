@@ -48,7 +48,7 @@ bool Page::plots(const std::vector<Plot>& plots, bool wide) {
     std::string figures;
     for (const Plot& plot : plots) {
         figures += to_html(plot);
-        if (has_marks(plot)) plots_.append(to_json(plot));
+        if (has_marks(plot)) drawn_plots_.push_back(plot);
     }
     if (figures.empty()) return false;
     body_ += fmt::format("<div class=\"plots{}\">\n{}</div>\n", wide ? " wide" : "", figures);
@@ -87,7 +87,8 @@ std::string Page::document(const std::string& title, const std::string& lead) co
         escape(title), lead, links);
     html += body_;
     Json::Value data;
-    data["plots"] = plots_;
+    data["plots"] = Json::arrayValue;
+    for (const Plot& plot : drawn_plots_) data["plots"].append(to_json(plot));
     html.append("</main>\n<script type=\"application/json\" id=\"report-data\">")
         .append(json_for_script(data))
         .append("</script>\n<script>")

@@ -37,6 +37,8 @@ public:
 
     [[nodiscard]] PictureBudget& pictures() { return pictures_; }
     [[nodiscard]] const CsvTables& csv() const { return csv_; }
+    /// Those with something to show, in their order.
+    [[nodiscard]] const std::vector<Plot>& drawn_plots() const { return drawn_plots_; }
 
     /// The whole document. `title` and `lead` (HTML) stand at its top.
     [[nodiscard]] std::string document(const std::string& title, const std::string& lead) const;
@@ -48,7 +50,7 @@ private:
     };
     std::string body_;
     std::vector<Link> links_;  // to the headings that have an id
-    Json::Value plots_ = Json::arrayValue;
+    std::vector<Plot> drawn_plots_;
     CsvTables csv_;
     PictureBudget pictures_;
 };

@@ -25,12 +25,6 @@ constexpr double kBarLeft = 150;
 constexpr double kBarRight = 420;  // room for the value behind it
 constexpr std::size_t kLabelLength = 20;
 
-std::string open_svg(const Plot& plot, double height) {
-    return fmt::format(
-        "<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n", kWidth, height,
-        escape(fmt::format("{}: {} against {}", plot.title, plot.y_title, plot.x_title)));
-}
-
 std::string classes(const Series& series) {
     return series.ink ? "ink" : color_class(series.color);
 }
@@ -144,7 +138,7 @@ std::string series_svg(const Series& series, const Axis& x, const Axis& y) {
     return svg + dots + "</g>\n";
 }
 
-std::string curves_svg(const Plot& plot) {
+Drawing draw_curves(const Plot& plot) {
     std::vector<double> xs;
     std::vector<double> ys;
     for (const Series& series : plot.series) {
@@ -157,11 +151,10 @@ std::string curves_svg(const Plot& plot) {
     const Axis::Scale scale = scale_of(plot);
     const Axis x(xs, plot.counts ? Axis::Scale::counting : scale, kLeft, kRight);
     const Axis y(ys, scale, kBottom, kTop);
-    std::string svg = open_svg(plot, kHeight) +
-                      x_axis(x, plot.x_title, kTop, kBottom, kLeft, kRight) +
-                      y_axis(y, plot.y_title);
+    std::string svg =
+        x_axis(x, plot.x_title, kTop, kBottom, kLeft, kRight) + y_axis(y, plot.y_title);
     for (const Series& series : plot.series) svg += series_svg(series, x, y);
-    return svg + "</svg>\n";
+    return {kWidth, kHeight, svg};
 }
 
 std::string bar_svg(const Mark& mark, const Axis& axis, double top, double thickness, double zero) {
@@ -184,7 +177,7 @@ std::string bar_svg(const Mark& mark, const Axis& axis, double top, double thick
                              behind + 5, middle + 4, infinite ? "∞" : tick_text(mark.x));
 }
 
-std::string bars_svg(const Plot& plot) {
+Drawing draw_bars(const Plot& plot) {
     const double thickness = plot.series.size() > 1 ? 11 : 15;
     const double step = thickness * double(plot.series.size()) + 8;
     const double bottom = kTop + step * double(plot.categories.size());
@@ -197,8 +190,7 @@ std::string bars_svg(const Plot& plot) {
     if (plot.reference) values.push_back(*plot.reference);
     const Axis axis(values, scale_of(plot), kBarLeft, kBarRight);
     const double zero = plot.logarithmic ? kBarLeft : axis.place(0);
-    std::string svg =
-        open_svg(plot, bottom + 46) + x_axis(axis, plot.x_title, kTop, bottom, kBarLeft, kBarRight);
+    std::string svg = x_axis(axis, plot.x_title, kTop, bottom, kBarLeft, kBarRight);
     for (std::size_t i = 0; i < plot.categories.size(); ++i) {
         const Category& category = plot.categories[i];
         const double top = kTop + step * double(i) + 4;
@@ -221,13 +213,38 @@ std::string bars_svg(const Plot& plot) {
         svg += fmt::format("<path class=\"reference\" d=\"M{:.1f} {}V{:.1f}\"/>\n",
                            axis.place(*plot.reference), kTop, bottom);
     }
-    return svg + "</svg>\n";
+    return {kWidth, bottom + 46, svg};
 }
 
 }  // namespace
 
+Drawing draw(const Plot& plot) {
+    return plot.kind == Plot::Kind::bars ? draw_bars(plot) : draw_curves(plot);
+}
+
 std::string to_svg(const Plot& plot) {
-    return plot.kind == Plot::Kind::bars ? bars_svg(plot) : curves_svg(plot);
+    const Drawing drawing = draw(plot);
+    return fmt::format(
+        "<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
+        drawing.width, drawing.height,
+        escape(fmt::format("{}: {} against {}", plot.title, plot.y_title, plot.x_title)),
+        drawing.shapes);
+}
+
+std::string key_svg(const Plot& plot, const Series& series, double x, double y) {
+    constexpr double kKeyWidth = 28;
+    if (plot.kind == Plot::Kind::bars) {
+        return fmt::format(
+            "<g class=\"ink o{}\"><rect class=\"f\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" "
+            "height=\"10\"/></g>",
+            series.variant, x, y - 5, kKeyWidth);
+    }
+    std::string shapes;
+    if (series.joined) {
+        shapes = fmt::format("<path class=\"s\" d=\"M{:.1f} {:.1f}h{}\"/>", x, y, kKeyWidth);
+    }
+    if (series.dots) shapes += dot(x + kKeyWidth / 2, y, series.color / kColors, "");
+    return fmt::format("<g class=\"{} d{}\">{}</g>", classes(series), series.variant % 4, shapes);
 }
 
 }  // namespace lodbench::report::html

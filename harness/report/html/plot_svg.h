@@ -6,7 +6,17 @@
 
 namespace lodbench::report::html {
 
-/// The plot as it stands without a script. Colours are classes of the page's style sheet.
+/// What a plot is drawn with, without the element around it. Colours are classes.
+struct Drawing {
+    double width = 0, height = 0;
+    std::string shapes;
+};
+[[nodiscard]] Drawing draw(const Plot& plot);
+
+/// The plot as it stands on the page without a script.
 [[nodiscard]] std::string to_svg(const Plot& plot);
+
+/// What a series looks like, from `x` on and around `y`: 28 wide.
+[[nodiscard]] std::string key_svg(const Plot& plot, const Series& series, double x, double y);
 
 }  // namespace lodbench::report::html

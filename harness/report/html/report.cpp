@@ -70,7 +70,7 @@ Report make_report(const std::vector<results::ResultFolder>& folders) {
     for (const results::ResultFolder& folder : folders)
         names += (names.empty() ? "" : ", ") + folder.name;
     return {page.document("Terrain level of detail, measured: " + names, lead_html(data)),
-            page.csv().files()};
+            page.csv().files(), page.drawn_plots()};
 }
 
 }  // namespace lodbench::report::html

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "report/html/plot.h"
 #include "results/folder.h"
 
 namespace lodbench::report::html {
@@ -12,6 +13,7 @@ namespace lodbench::report::html {
 struct Report {
     std::string html;
     std::map<std::string, std::string> csv;  ///< every table, by its name
+    std::vector<Plot> plots;                 ///< that the page shows
 };
 
 /// A pure function of the folders and of the pictures in them. Throws EnvironmentError where a

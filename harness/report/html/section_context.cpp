@@ -26,8 +26,15 @@ std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
     for (const Json::Value& warning : folder.run["warnings"]) {
         if (warning.isString()) texts.push_back(warning.asString());
     }
+    for (const Json::Value& noise : folder.run["noise"]) {
+        if (noise.isString()) texts.push_back("noise: " + noise.asString());
+    }
     std::map<std::string, std::vector<std::string>> cells;
     for (const Json::Value& cell : folder.cells) {
+        if (cell["noise"].isString()) {
+            texts.push_back(
+                fmt::format("noise: {}: {}", cell["cell"].asString(), cell["noise"].asString()));
+        }
         for (const Json::Value& warning : cell["warnings"]) {
             cells[warning.asString()].push_back(cell["cell"].asString());
         }
