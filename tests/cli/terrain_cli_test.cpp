@@ -12,7 +12,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "unit/raster_files.h"
+#include "support/raster_files.h"
 
 namespace {
 
@@ -150,7 +150,8 @@ TEST_F(TerrainCommand, errors_are_what_an_independent_program_computes) {
     if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0) {
         GTEST_SKIP() << "no numpy";
     }
-    const std::string check = "; /usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/check_errors.py ";
+    const std::string check =
+        "; /usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/support/check_errors.py ";
     ASSERT_EQ(
         run("synth ridged --rows 129 --columns 129 --spacing 10 --spacing-y 7 -o a.raw").status, 0);
     for (const char* scheme : {"ppcs", "ppcs-plain", "rpcs"}) {
