@@ -122,7 +122,7 @@ double best_of(int repetitions, const Work& work) {
 
 }  // namespace
 
-void errors_cost(const Options& options) {
+void errors_benchmark(const Options& options) {
     const std::unique_ptr<terrain::HeightField> whole = terrain::load_terrain(options.source());
     const int cores =
         int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));

@@ -1,5 +1,5 @@
-// What the harness itself adds to a frame: a method that does nothing, and `full-grid`, flown in
-// turns over the embedded scenario.
+// What the harness itself adds to a frame: a method that does nothing, and one that draws, flown in
+// turns over the embedded scenario; its share is that of the latter's frame.
 
 #include <fmt/format.h>
 
@@ -26,10 +26,11 @@ class Aircraft {
 public:
     Aircraft(const scenario::Scenario& scenario,
              std::shared_ptr<const terrain::HeightField> terrain,
-             const std::filesystem::path& plugin, const std::string& method)
+             const std::filesystem::path& plugin, const std::string& method,
+             const run::Settings& settings)
         : scenario_(scenario),
           path_(scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, *terrain)),
-          stage_(run::StageSetup{std::move(terrain), plugin, method, {}, ""}, signs_) {
+          stage_(run::StageSetup{std::move(terrain), plugin, method, settings, ""}, signs_) {
         stage_.prepare();
         stage_.upload();
         stage_.resize(scenario.viewport);
@@ -73,31 +74,32 @@ double median(const std::vector<double>& values) {
 
 }  // namespace
 
-void harness_cost() {
+void harness_benchmark(const Options& options) {
+    const run::MethodInfo method = flown_method(options);
     const scenario::Scenario scenario = scenario::load_scenario(run::demo_scenario());
     const std::shared_ptr<const terrain::HeightField> terrain =
         terrain::load_terrain(scenario.terrain);
-    std::vector<double> nothing_wall, nothing_host, grid_wall;
+    std::vector<double> nothing_wall, nothing_host, other_wall;
     for (int round = 0; round < 3; ++round) {
         // One context at a time is current on a thread: each flies and goes.
-        const Flown nothing = Aircraft(scenario, terrain, LODBENCH_NOTHING_PLUGIN, "nothing").fly();
-        const Flown grid =
-            Aircraft(scenario, terrain, run::default_plugin_folder() / "full_grid.so", "full-grid")
-                .fly();
+        const Flown nothing =
+            Aircraft(scenario, terrain, LODBENCH_NOTHING_PLUGIN, "nothing", {}).fly();
+        const Flown other =
+            Aircraft(scenario, terrain, method.plugin, method.id, options.settings).fly();
         nothing_wall.insert(nothing_wall.end(), nothing.wall_ms.begin(), nothing.wall_ms.end());
         nothing_host.insert(nothing_host.end(), nothing.host_ms.begin(), nothing.host_ms.end());
-        grid_wall.insert(grid_wall.end(), grid.wall_ms.begin(), grid.wall_ms.end());
+        other_wall.insert(other_wall.end(), other.wall_ms.begin(), other.wall_ms.end());
     }
     const double host = median(nothing_host);
     const double wall = median(nothing_wall);
-    const double grid = median(grid_wall);
+    const double other = median(other_wall);
     fmt::print("harness, a method that does nothing, {} frames at {}x{}, medians:\n",
                nothing_wall.size(), scenario.viewport.width, scenario.viewport.height);
-    fmt::print("  host calls per frame            {:8.1f} us   {:.3f} % of full-grid's frame\n",
-               host * 1e3, 100 * host / grid);
+    fmt::print("  host calls per frame            {:8.1f} us   {:.3f} % of {}'s frame\n",
+               host * 1e3, 100 * host / other, method.id);
     fmt::print("  with clearing and glFinish      {:8.1f} us   {:.3f} %\n", wall * 1e3,
-               100 * wall / grid);
-    fmt::print("  full-grid's frame               {:8.1f} us\n", grid * 1e3);
+               100 * wall / other);
+    fmt::print("  {:<31} {:8.1f} us\n", method.id + "'s frame", other * 1e3);
 }
 
 }  // namespace lodbench::benchmarks

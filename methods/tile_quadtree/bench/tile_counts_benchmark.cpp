@@ -169,7 +169,7 @@ void print_places(const TileCatalogue& catalogue, const TileMetric& metric,
 
 }  // namespace
 
-void tile_counts(const Options& options) {
+void tile_counts_benchmark(const Options& options) {
     const std::unique_ptr<terrain::HeightField> terrain = terrain::load_terrain(options.source());
     const TileCatalogue catalogue(*terrain);
     const std::vector<Camera> cameras = flight_of(*terrain, options.frames);

@@ -76,7 +76,7 @@ std::vector<glm::ivec2> samples_in_view(const Camera& camera,
 
 }  // namespace
 
-void ray_caster_cost(const Options& options) {
+void rays_benchmark(const Options& options) {
     terrain::TerrainSource source;
     source.synthetic = "ridged";
     source.rows = options.size;

@@ -73,7 +73,7 @@ struct Candidate {
 
 }  // namespace
 
-void flights_search(const Options& options) {
+void flights_benchmark(const Options& options) {
     const std::shared_ptr<const terrain::HeightField> terrain =
         terrain::load_terrain(options.source());
     const TerrainInfo& info = terrain->info();

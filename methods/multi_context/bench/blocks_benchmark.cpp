@@ -155,7 +155,7 @@ Drawn draw(const std::shared_ptr<const terrain::HeightField>& terrain, double de
 
 }  // namespace
 
-void blocks_cost(const Options& options) {
+void blocks_benchmark(const Options& options) {
     const std::unique_ptr<terrain::HeightField> whole = terrain::load_terrain(options.source());
     fmt::print("blocks, {}: k = 33, delta = 1, shortest of {}\n", whole->info().name,
                options.repetitions);

@@ -265,7 +265,7 @@ void judge(const std::vector<Cells>& table) {
 
 }  // namespace
 
-void patches_cost(const Options& options) {
+void patches_benchmark(const Options& options) {
     const std::unique_ptr<terrain::HeightField> whole = terrain::load_terrain(options.source());
     // In a few frames of the few patches of a large tolerance, single ones would decide about L6.
     const int frames = std::max(options.frames, kFewestFrames);

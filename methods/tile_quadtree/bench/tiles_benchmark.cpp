@@ -20,9 +20,9 @@
 #include "platform/context.h"
 #include "run/locations.h"
 #include "run/stage.h"
+#include "tile_quadtree/bench/tile_shaders.h"
 #include "tile_quadtree/resident_errors.h"
 #include "tile_quadtree/tile_selection.h"
-#include "tile_shaders.h"
 
 namespace lodbench::benchmarks {
 namespace {
@@ -233,7 +233,7 @@ void print_errors_cost(const Terrain& terrain, int repetitions) {
 
 }  // namespace
 
-void tiles_cost(const Options& options) {
+void tiles_benchmark(const Options& options) {
     const std::unique_ptr<terrain::HeightField> whole = terrain::load_terrain(options.source());
     fmt::print("tiles, {}: tau {}, {} frames of 640 x 480, selection waited for\n",
                whole->info().name, kTau, options.frames);

@@ -88,7 +88,7 @@ void refine(const Terrain& terrain, const Options& options) {
 
 }  // namespace
 
-void lindstrom_cost(const Options& options) {
+void lindstrom_benchmark(const Options& options) {
     terrain::TerrainSource source;
     source.synthetic = "ridged";
     source.rows = options.size;

@@ -35,7 +35,7 @@ std::string text_of(const Json::Value& value) {
 
 }  // namespace
 
-void staleness_cost(const Options& options) {
+void staleness_benchmark(const Options& options) {
     const std::shared_ptr<const terrain::HeightField> terrain =
         terrain::load_terrain(options.source());
     run::VitalSigns signs;

@@ -23,7 +23,7 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 # error, metric, morph, lambda
 COLUMNS = {
     "midpoint, euclidean": ("midpoint", "euclidean", 1.0, "tan"),
