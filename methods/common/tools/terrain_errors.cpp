@@ -1,35 +1,33 @@
-// lodbench terrain errors: the a-priori refinement criteria of longest-edge bisection, to look at
+// lodbench-terrain-errors: the a-priori refinement criteria of longest-edge bisection, to look at
 // and to check with other tools.
 
 #include <chrono>
-#include <memory>
 
 #include "base/console.h"
+#include "cli/program.h"
 #include "cli/terrain_options.h"
 #include "common/leb_errors.h"
 #include "results/json.h"
 #include "terrain/raster_writer.h"
 
-namespace lodbench::cli {
+namespace lodbench::common {
 namespace {
 
-using common::ErrorKind;
-
-struct Options : TerrainOptions {
+struct Options : cli::TerrainOptions {
     std::string scheme = "ppcs";
     std::string error = "midpoint";
 };
 
-using ComputeErrors = void (*)(common::LebGrid&, ErrorKind);
+using ComputeErrors = void (*)(LebGrid&, ErrorKind);
 
 ComputeErrors scheme_of(const std::string& name) {
-    if (name == "rpcs") return common::compute_errors_recursively;
-    if (name == "ppcs-plain") return common::compute_errors_by_level_plain;
-    return common::compute_errors_by_level;
+    if (name == "rpcs") return compute_errors_recursively;
+    if (name == "ppcs-plain") return compute_errors_by_level_plain;
+    return compute_errors_by_level;
 }
 
 /// The terrain's samples without padding; two channels, metres.
-terrain::FloatRaster raster_of(const common::LebGrid& grid, const TerrainInfo& info,
+terrain::FloatRaster raster_of(const LebGrid& grid, const TerrainInfo& info,
                                const Options& options) {
     terrain::FloatRaster raster;
     raster.rows = info.rows;
@@ -42,7 +40,7 @@ terrain::FloatRaster raster_of(const common::LebGrid& grid, const TerrainInfo& i
     raster.values.reserve(2 * std::size_t(info.rows) * std::size_t(info.columns));
     for (int row = 0; row < info.rows; ++row) {
         for (int column = 0; column < info.columns; ++column) {
-            const common::LebVertex& vertex = grid.at({row, column});
+            const LebVertex& vertex = grid.at({row, column});
             raster.values.push_back(vertex.error);
             raster.values.push_back(vertex.radius);
         }
@@ -52,10 +50,10 @@ terrain::FloatRaster raster_of(const common::LebGrid& grid, const TerrainInfo& i
 
 void run(const Options& options, const CLI::App& command) {
     terrain::require_exr_output(options.output);  // before all the work
-    const terrain::LoadedTerrain loaded = load(options, command);
-    tell_warnings(loaded.field->info(), loaded.provenance);
+    const terrain::LoadedTerrain loaded = cli::load(options, command);
+    cli::tell_warnings(loaded.field->info(), loaded.provenance);
     const TerrainInfo& info = loaded.field->info();
-    common::LebGrid grid(*loaded.field);
+    LebGrid grid(*loaded.field);
     const auto start = std::chrono::steady_clock::now();
     scheme_of(options.scheme)(
         grid, options.error == "accumulated" ? ErrorKind::accumulated : ErrorKind::midpoint);
@@ -63,7 +61,7 @@ void run(const Options& options, const CLI::App& command) {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     terrain::write_exr(raster_of(grid, info, options), options.output);
     // What everything descends from.
-    const common::LebVertex& centre = grid.at({grid.size() / 2, grid.size() / 2});
+    const LebVertex& centre = grid.at({grid.size() / 2, grid.size() / 2});
     if (options.json) {
         Json::Value object;
         object["name"] = info.name;
@@ -88,38 +86,44 @@ void run(const Options& options, const CLI::App& command) {
     base::print("written   {}: channels error and radius, metres\n", options.output);
 }
 
-}  // namespace
-
-void add_terrain_errors(CLI::App& parent) {
-    const auto options = std::make_shared<Options>();
-    CLI::App& command = *parent.add_subcommand("errors",
-                                               "Writes the error and the nested radius of each "
-                                               "sample, as longest-edge bisection has them");
-    auto* file = command.add_option("FILE", options->source.file,
+void add_options(CLI::App& command, Options& options) {
+    auto* file = command.add_option("FILE", options.source.file,
                                     "Elevation model, image, raw file or tiled store");
-    auto* form = command.add_option("--synthetic", options->source.synthetic, "A synthetic form");
+    auto* form = command.add_option("--synthetic", options.source.synthetic, "A synthetic form");
     file->excludes(form);
     command
-        .add_option("-o,--output", options->output,
+        .add_option("-o,--output", options.output,
                     "OUT.exr: two channels of 32-bit floats in metres, error and radius")
         ->required();
     command
-        .add_option("--scheme", options->scheme,
+        .add_option("--scheme", options.scheme,
                     "ppcs: level by level, streamed; ppcs-plain: level by level; rpcs: recursion. "
                     "All give the same bits")
         ->check(CLI::IsMember({"ppcs", "ppcs-plain", "rpcs"}))
         ->capture_default_str();
     command
-        .add_option("--error", options->error,
+        .add_option("--error", options.error,
                     "midpoint: the largest of vertex and descendants; accumulated: the largest sum "
                     "along a path of descendants")
         ->check(CLI::IsMember({"midpoint", "accumulated"}))
         ->capture_default_str();
-    add_shape(command, *options);
-    add_overrides(command, *options);
-    add_file_overrides(command, *options);
-    command.footer(forms_text());
-    command.callback([&command, options] { run(*options, command); });
+    cli::add_shape(command, options);
+    cli::add_overrides(command, options);
+    cli::add_file_overrides(command, options);
+    command.footer(cli::forms_text());
 }
 
-}  // namespace lodbench::cli
+}  // namespace
+}  // namespace lodbench::common
+
+int main(int argc, char** argv) {
+    lodbench::base::secure_standard_streams();
+    CLI::App app{
+        "Writes the error and the nested radius of each sample, as longest-edge bisection has them",
+        "lodbench-terrain-errors"};
+    lodbench::common::Options options;
+    lodbench::common::add_options(app, options);
+    app.callback([&] { lodbench::common::run(options, app); });
+    const int status = 0;
+    return lodbench::cli::run_program(app, argc, argv, status);
+}

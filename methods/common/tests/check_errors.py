@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the raster of `lodbench terrain errors`, sharing no code with lodbench (numpy only).
+"""Checks the raster of `lodbench-terrain-errors`, sharing no code with lodbench (numpy only).
 
 check_errors.py HEIGHTS.raw ERRORS.exr SIZE SPACING_X SPACING_Y [accumulated]
 
