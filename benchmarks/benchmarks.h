@@ -1,10 +1,14 @@
 #pragma once
-// The subjects of lodbench_benchmarks: one file each. Ratios and rates in one run; no pass or fail.
+// What the subjects of lodbench_benchmarks have in common. Ratios and rates in one run; no pass or
+// fail.
 
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <string>
 
+#include "run/plugin_library.h"
 #include "terrain/height_field.h"
 
 namespace lodbench::benchmarks {
@@ -16,6 +20,8 @@ struct Options {
     std::filesystem::path terrain;  ///< empty: a ridged one of `size`
     double spacing = 10;            ///< metres
     double vertical_scale = 1;      ///< metres per unit of `terrain`
+    std::string method;             ///< of harness and truth; empty: see flown_method
+    run::Settings settings;         ///< of `method`
 
     [[nodiscard]] lodbench::terrain::TerrainSource source() const {
         lodbench::terrain::TerrainSource source;
@@ -46,47 +52,17 @@ double seconds_of(const Work& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// `lindstrom`: error preprocessing in ns per sample, refinement in triangles per second on one
-/// core.
-void lindstrom_cost(const Options& options);
+/// One file, and the word that runs it: see cmake/LodbenchBenchmarks.cmake.
+struct Subject {
+    const char* name;
+    void (*run)(const Options&);
+};
 
-/// The reference ray caster: rays and lines of sight per second on one thread, one view after
-/// another.
-void ray_caster_cost(const Options& options);
+/// All that were built, by name.
+[[nodiscard]] std::span<const Subject> subjects();
 
-/// Seconds and memory of one measured frame, all metrics, at 1025 and at the given size; needs a
-/// device.
-void truth_cost(const Options& options);
-
-/// `errors`: recursion, level by level and copy, from 1025 a side up to `size` or the terrain's.
-void errors_cost(const Options& options);
-
-/// `patches`: hybrid-patches against static-patches, and its parts on the CPU, from 1025 to 4097 a
-/// side, up to `size`; needs a device.
-void patches_cost(const Options& options);
-
-/// `store`: building, reading and verifying a tiled store of the terrain, float32 and 16 bits, in a
-/// temporary folder.
-void store_cost(const Options& options);
-/// `blocks`: multi-context's errors pass, read-backs and draw calls, from 1025 to 4097 a side, up
-/// to `size`; needs a device.
-void blocks_cost(const Options& options);
-
-/// `flights`: the altitude, pitch and lens that come nearest to the triangles of multi-context's
-/// paper; needs a device.
-void flights_search(const Options& options);
-
-/// `staleness`: multi-context's errors over one terrain, with errors of an eye some way behind;
-/// needs a device.
-void staleness_cost(const Options& options);
-/// `tiles`: how the tile quadtrees select, from 1025 a side up to `size` or the terrain's, and what
-/// errors on the GPU cost; needs a device.
-void tiles_cost(const Options& options);
-
-/// `tile-counts`: tiles that the cuboids of Yang et al. draw against `fu`, by each reading of (12).
-void tile_counts(const Options& options);
-
-/// Cost per frame of the harness alone, as a share of a frame of `full-grid`; needs a device.
-void harness_cost();
+/// A method of the default plugins that is not said by name in this folder: that of the options,
+/// else the first one that is no example. Throws InputError when there is none.
+[[nodiscard]] run::MethodInfo flown_method(const Options& options);
 
 }  // namespace lodbench::benchmarks

@@ -81,7 +81,7 @@ void measure(const terrain::HeightField& field, std::optional<double> step,
 
 }  // namespace
 
-void store_cost(const Options& options) {
+void store_benchmark(const Options& options) {
     const std::unique_ptr<terrain::HeightField> field = terrain::load_terrain(options.source());
     fmt::print("tiled store of {} x {} samples, best of {}, files warm\n", field->info().rows,
                field->info().columns, options.repetitions);

@@ -48,10 +48,9 @@ void measure_frames(const Options& options, int size) {
     source.synthetic = "ridged";
     source.rows = source.columns = size;
     const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(source);
+    const run::MethodInfo method = flown_method(options);
     run::VitalSigns signs;
-    run::Stage stage(
-        {terrain, run::default_plugin_folder() / "lindstrom.so", "lindstrom", {{"tau", "1"}}, ""},
-        signs);
+    run::Stage stage({terrain, method.plugin, method.id, options.settings, ""}, signs);
     stage.prepare();
     stage.upload();
     const Camera first = grazing_camera(terrain->info(), 0);
@@ -82,8 +81,8 @@ void measure_frames(const Options& options, int size) {
         return *measure::percentile(values, 0.5);
     };
     const double seconds = median(taken) + median(measured);
-    fmt::print("truth of a frame, lindstrom at tau 1, ridged {0} x {0}, {1} x {2} pixels:\n", size,
-               first.viewport.width, first.viewport.height);
+    fmt::print("truth of a frame of {3}, ridged {0} x {0}, {1} x {2} pixels:\n", size,
+               first.viewport.width, first.viewport.height, method.id);
     fmt::print("  {:.3f} s ({:.3f} capture and surface, {:.3f} metrics and pictures)\n", seconds,
                median(taken), median(measured));
     fmt::print(
@@ -96,7 +95,7 @@ void measure_frames(const Options& options, int size) {
 
 }  // namespace
 
-void truth_cost(const Options& options) {
+void truth_benchmark(const Options& options) {
     measure_frames(options, 1025);
     if (options.size != 1025) measure_frames(options, options.size);
 }

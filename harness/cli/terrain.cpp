@@ -8,15 +8,13 @@
 namespace lodbench::cli {
 
 void add_terrain(CLI::App& app, int& status) {
-    CLI::App& command =
-        *app.add_subcommand("terrain", "Looks at, imports, makes and preprocesses terrains");
+    CLI::App& command = *app.add_subcommand("terrain", "Looks at, imports and makes terrains");
     command.require_subcommand(1);
     add_terrain_info(command);
     add_terrain_import(command);
     add_terrain_synth(command);
     add_terrain_upsample(command);
     add_terrain_verify(command, status);
-    add_terrain_errors(command);
 }
 
 }  // namespace lodbench::cli

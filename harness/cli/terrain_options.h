@@ -57,6 +57,5 @@ void add_terrain_import(CLI::App& parent);
 void add_terrain_synth(CLI::App& parent);
 void add_terrain_upsample(CLI::App& parent);
 void add_terrain_verify(CLI::App& parent, int& status);
-void add_terrain_errors(CLI::App& parent);
 
 }  // namespace lodbench::cli

@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "cli/run_lodbench.h"
-#include "unit/raster_files.h"
+#include "support/raster_files.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <map>
 
-#include "cli/run_lodbench.h"
 #include "sanitizers/sanitizers.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 #include "results/error_metric.h"
 #include "scenario/scenario.h"
 

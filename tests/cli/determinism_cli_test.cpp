@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
-#include "cli/frames_csv.h"
-#include "cli/run_lodbench.h"
+#include "support/frames_csv.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "results/json.h"
-#include "run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "base/process_tree.h"
 #include "cli/kills.h"
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

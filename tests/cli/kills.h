@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 

@@ -1,4 +1,4 @@
-#include "mesh_tools.h"
+#include "support/mesh_tools.h"
 
 namespace lodbench::test {
 namespace {

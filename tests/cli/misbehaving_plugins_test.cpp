@@ -13,9 +13,9 @@
 #include <span>
 
 #include "base/process_tree.h"
-#include "cli/run_lodbench.h"
 #include "run/plugin_library.h"
 #include "sanitizers/sanitizers.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include "run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {
@@ -135,7 +135,7 @@ TEST(Resume, refuses_arguments_that_contradict_the_run_and_takes_the_same_again)
     EXPECT_EQ(cells_of(out).size(), 1U) << "no cell was added";
 }
 
-TEST(Output, a_missing_folder_is_named_and_what_is_no_regular_file_stays) {
+TEST(OutputFile, a_missing_folder_is_named_and_what_is_no_regular_file_stays) {
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "").string();
     const auto mesh = [&](const std::string& out) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/printable.h"
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <csignal>
 
 #include "api/method.h"
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 #include "report/table.h"
 
 namespace lodbench::test {

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/frames_csv.h"
-#include "cli/run_lodbench.h"
 #include "measure/pixel_errors.h"
+#include "support/frames_csv.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "cli/kills.h"
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

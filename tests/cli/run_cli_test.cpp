@@ -9,8 +9,8 @@
 #include <numeric>
 #include <set>
 
-#include "cli/frames_csv.h"
-#include "cli/run_lodbench.h"
+#include "support/frames_csv.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {
@@ -144,7 +144,7 @@ TEST_F(Run, pictures_and_wireframes_are_whole_png_of_the_size_asked_for) {
         run(scenario(), kThree + Arguments{"--size", "40x30", "--frames", "2"}, out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
     std::set<std::string> names;
-    std::string check = "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/check_png.py 40 30";
+    std::string check = "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/support/check_png.py 40 30";
     for (const auto& file : fs::directory_iterator(out() / "shots")) {
         names.insert(file.path().filename().string());
         // The worst frame's picture is of several panels and its own size.

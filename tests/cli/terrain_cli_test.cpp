@@ -10,9 +10,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
-#include <tuple>
 
-#include "unit/raster_files.h"
+#include "support/raster_files.h"
 
 namespace {
 
@@ -142,65 +141,6 @@ TEST_F(TerrainCommand, a_full_disk_is_told_and_leaves_no_file) {
     EXPECT_EQ(outcome.status, 4);
     EXPECT_NE(outcome.text.find("a.raw: cannot be written: File too large"), std::string::npos)
         << outcome.text;
-    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
-}
-
-#ifdef LODBENCH_WITH_OIIO
-TEST_F(TerrainCommand, errors_are_what_an_independent_program_computes) {
-    if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0) {
-        GTEST_SKIP() << "no numpy";
-    }
-    const std::string check = "; /usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/check_errors.py ";
-    ASSERT_EQ(
-        run("synth ridged --rows 129 --columns 129 --spacing 10 --spacing-y 7 -o a.raw").status, 0);
-    for (const char* scheme : {"ppcs", "ppcs-plain", "rpcs"}) {
-        for (const char* error : {"midpoint", "accumulated"}) {
-            const Outcome outcome =
-                run(std::string("errors a.raw -o a.exr --scheme ") + scheme + " --error " + error +
-                    check + "a.raw a.exr 129 10 7 " + error);
-            EXPECT_EQ(outcome.status, 0) << outcome.text;
-            EXPECT_NE(outcome.text.find("a.exr: channels error and radius, metres\n129 x 129"),
-                      std::string::npos)
-                << outcome.text;
-        }
-    }
-    // What was written for one kind is not taken for the other.
-    EXPECT_EQ(run("errors a.raw -o a.exr" + check + "a.raw a.exr 129 10 7 accumulated").status, 1);
-}
-
-TEST_F(TerrainCommand, errors_leaves_out_the_padding_and_no_part_of_a_file) {
-    const Outcome outcome = run("errors --synthetic ridged --rows 30 --columns 50 -o a.exr --json");
-    ASSERT_EQ(outcome.status, 0) << outcome.text;
-    const Json::Value json = parsed(outcome.text);
-    EXPECT_EQ(json["padded_size"].asInt(), 65);
-    EXPECT_EQ(json["rows"].asInt(), 30);
-    EXPECT_GT(json["centre_radius_m"].asDouble(), 320.0);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
-    EXPECT_EQ(run("errors --synthetic plane -o a.exr --scheme best").status, 2);
-}
-#endif
-
-TEST_F(TerrainCommand, errors_refuses_its_output_before_it_reads_or_computes_anything) {
-    // No such terrains: whatever is said of them comes too late.
-    for (const char* terrain : {"none.tif", "--synthetic mountain"}) {
-        const std::string errors = std::string("errors ") + terrain + " -o ";
-        const std::tuple<const char*, int, const char*> mistakes[] = {
-            {"a.png", 2,
-             "lodbench: a.png: rasters of floats are written as .exr; give a name that ends so\n"},
-            {"a", 2,
-             "lodbench: a: rasters of floats are written as .exr; give a name that ends so\n"},
-            {"none/a.exr", 2,
-             "lodbench: none/a.exr: the folder none does not exist; make it first\n"},
-            // Nobody may make a file there, root neither.
-            {"/sys/a.exr", 4,
-             "lodbench: /sys/a.exr: the folder /sys takes no file: Permission denied; choose one "
-             "that may be written to\n"}};
-        for (const auto& [output, status, message] : mistakes) {
-            const Outcome outcome = run(errors + output);
-            EXPECT_EQ(outcome.status, status) << output;
-            EXPECT_EQ(outcome.text, message) << output;
-        }
-    }
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 

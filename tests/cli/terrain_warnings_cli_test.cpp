@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/run_lodbench.h"
-#include "unit/raster_files.h"
+#include "support/raster_files.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

@@ -8,9 +8,9 @@
 #include <chrono>
 #include <thread>
 
-#include "cli/run_lodbench.h"
 #include "sanitizers/sanitizers.h"
-#include "unit/tile_store_files.h"
+#include "support/run_lodbench.h"
+#include "support/tile_store_files.h"
 
 namespace lodbench::test {
 namespace {

@@ -11,8 +11,8 @@
 #include <numeric>
 #include <sstream>
 
-#include "cli/frames_csv.h"
-#include "cli/run_lodbench.h"
+#include "support/frames_csv.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

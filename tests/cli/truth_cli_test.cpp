@@ -8,9 +8,9 @@
 #include <limits>
 #include <map>
 
-#include "cli/frames_csv.h"
-#include "mesh_tools.h"
-#include "run_lodbench.h"
+#include "support/frames_csv.h"
+#include "support/mesh_tools.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {
@@ -18,8 +18,8 @@ namespace {
 constexpr const char* kPuget = LODBENCH_SOURCE_DIR "/scenarios/terrain/puget_sound_1025_160m.png";
 
 Outcome check_truth(const std::string& mesh, const std::string& heights) {
-    return run_command(std::string(kPython) + LODBENCH_SOURCE_DIR "/tests/check_truth.py " + mesh +
-                       " " + heights);
+    return run_command(std::string(kPython) + LODBENCH_SOURCE_DIR "/tests/support/check_truth.py " +
+                       mesh + " " + heights);
 }
 
 /// A figure of check_truth.py or of a cell; NaN where it is null.

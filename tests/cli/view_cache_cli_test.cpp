@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/run_lodbench.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {
@@ -34,9 +34,9 @@ repetitions = 1
 }
 
 int compare(const fs::path& before, const fs::path& after) {
-    const std::string command = "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/compare_truth.py " +
-                                before.string() + " " + after.string() + " > " +
-                                (after / "compared.txt").string();
+    const std::string command =
+        "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/support/compare_truth.py " +
+        before.string() + " " + after.string() + " > " + (after / "compared.txt").string();
     return std::system(command.c_str());
 }
 

@@ -2,7 +2,7 @@
 
 #include <tuple>
 
-#include "watertight.h"
+#include "support/watertight.h"
 
 namespace lodbench::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "watertight.h"
+#include "support/watertight.h"
 
 namespace lodbench::test {
 namespace {

@@ -10,10 +10,10 @@
 #include <initializer_list>
 
 #include "api/error.h"
-#include "fake_terrain.h"
 #include "fuzz/refusal.h"
 #include "fuzz/seeds.h"
 #include "scenario/scenario.h"
+#include "support/fake_terrain.h"
 
 namespace lodbench::test {
 namespace {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "api/error.h"
+#include "support/tile_store_files.h"
 #include "terrain/open_terrain.h"
 #include "terrain/tile_store_check.h"
-#include "unit/tile_store_files.h"
 
 namespace lodbench::test {
 

@@ -5,9 +5,9 @@
 #include <glm/vec2.hpp>
 
 #include "api/error.h"
-#include "context_for_test.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "support/context_for_test.h"
 
 namespace lodbench::gl {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstddef>
 
-#include "context_for_test.h"
 #include "gl/frame_blocks.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "measure/capture.h"
+#include "support/context_for_test.h"
 
 namespace lodbench::gl {
 namespace {

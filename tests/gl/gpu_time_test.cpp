@@ -1,11 +1,11 @@
 // The verdict on the driver's timer, and the ring of timestamps.
 #include <gtest/gtest.h>
 
-#include "context_for_test.h"
 #include "gl/alive_objects.h"
 #include "gl/state.h"
 #include "gl/timestamp_ring.h"
 #include "measure/timer_verdict.h"
+#include "support/context_for_test.h"
 
 namespace lodbench::gl {
 namespace {

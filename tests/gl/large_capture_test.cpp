@@ -8,10 +8,10 @@
 #include <glm/vec2.hpp>
 
 #include "api/error.h"
-#include "context_for_test.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "measure/capture.h"
+#include "support/context_for_test.h"
 
 namespace lodbench::gl {
 namespace {

@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "api/error.h"
-#include "context_for_test.h"
 #include "gl/alive_objects.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/state.h"
+#include "support/context_for_test.h"
 
 namespace lodbench::gl {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "api/error.h"
-#include "context_for_test.h"
 #include "gl/objects.h"
+#include "support/context_for_test.h"
 
 namespace lodbench::test {
 namespace {

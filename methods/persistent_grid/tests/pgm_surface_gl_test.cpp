@@ -1,0 +1,256 @@
+// What pgm really sends to the rasteriser, against its mapping and its pyramid in double.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
+
+#include "persistent_grid/mapping.h"
+#include "persistent_grid/pyramid.h"
+#include "support/method_fixture.h"
+
+namespace lodbench::test {
+namespace {
+
+using persistent_grid::GridSize;
+using persistent_grid::Level;
+using persistent_grid::Mapping;
+
+constexpr GridSize kGrid{40, 30};
+constexpr double kMargin = 0.05;
+const std::vector<std::pair<std::string, std::string>> kSettings = {{"grid", "30"},
+                                                                    {"aspect", "1.3333"}};
+
+struct NamedCamera {
+    const char* name;
+    Camera camera;
+};
+
+std::vector<NamedCamera> cameras(const TerrainInfo& info) {
+    const glm::dvec2 centre = (info.extent_min() + info.extent_max()) / 2.0;
+    const glm::dvec2 outside = info.extent_min() - glm::dvec2(3000, 2000);
+    return {{"level", camera_at({centre, 400}, 30, 0)},
+            {"downward", camera_at({centre, 400}, 100, -25)},
+            {"steeply downward", camera_at({centre, 900}, 200, -70)},
+            {"straight down", camera_at({centre, 700}, 0, -90)},
+            {"straight down, turned", camera_at({centre, 700}, 77, -90)},
+            {"upward", camera_at({centre, 300}, 250, 40)},
+            {"straight up", camera_at({centre, 300}, 0, 90)},
+            {"rolled by 45 degrees", camera_at({centre, 400}, 10, -10, 45)},
+            {"rolled by 90 degrees", camera_at({centre, 400}, 10, -40, 90)},
+            {"upside down", camera_at({centre, 400}, 310, -5, 180)},
+            {"rolled, all rays downward", camera_at({centre, 900}, 10, -80, 30)},
+            {"on the plane", camera_at({centre, 0}, 45, 0)},
+            {"on the plane, downward", camera_at({centre, 0}, 45, -60)},
+            {"under the plane", camera_at({centre, -250}, 45, 5)},
+            {"under the plane, straight down", camera_at({centre, -250}, 0, -90)},
+            {"outside, towards the terrain", camera_at({outside, 500}, 45, -5)},
+            {"outside, away from it", camera_at({outside, 500}, 225, -5)},
+            {"far outside", camera_at({outside - glm::dvec2(4e5, 4e5), 9000}, 45, -2)},
+            {"narrow", camera_at({centre, 400}, 30, -3, 0, 5)},
+            {"wide", camera_at({centre, 400}, 30, -3, 0, 120)}};
+}
+
+/// The grid's vertices by (row, column), from the triangles: cells come in bands of eight columns,
+/// each cell as (far left, near left, near right), (far left, near right, far right).
+std::vector<glm::vec3> grid_vertices(const measure::CapturedSurface& surface) {
+    std::vector<glm::vec3> vertices(std::size_t(kGrid.columns * kGrid.rows));
+    std::size_t next = 0;
+    for (int band = 0; band < kGrid.columns - 1; band += 8) {
+        for (int row = 0; row < kGrid.rows - 1; ++row) {
+            for (int column = band; column < std::min(band + 8, kGrid.columns - 1);
+                 ++column, next += 6) {
+                const std::size_t far_left = std::size_t(row * kGrid.columns + column);
+                const std::size_t near_left = far_left + std::size_t(kGrid.columns);
+                vertices[far_left] = surface.vertices[next];
+                vertices[near_left] = surface.vertices[next + 1];
+                vertices[near_left + 1] = surface.vertices[next + 2];
+                vertices[far_left + 1] = surface.vertices[next + 5];
+            }
+        }
+    }
+    return vertices;
+}
+
+class PgmSurface : public ::testing::Test {
+protected:
+    std::shared_ptr<const terrain::HeightField> terrain_ = hills(201, 166);
+    Flight flight_{terrain_, "persistent_grid", "pgm", kSettings};
+};
+
+TEST_F(PgmSurface, is_finite_and_has_the_same_number_of_triangles_for_every_camera) {
+    for (const auto& [name, camera] : cameras(terrain_->info())) {
+        const auto surface = flight_.surface(camera);
+        EXPECT_EQ(surface.triangle_count(), std::size_t(2 * (kGrid.columns - 1) * (kGrid.rows - 1)))
+            << name;
+        EXPECT_EQ(flight_.stage().count_primitives(), surface.triangle_count()) << name;
+        for (const glm::vec3& vertex : surface.vertices) {
+            ASSERT_TRUE(std::isfinite(vertex.x) && std::isfinite(vertex.y) &&
+                        std::isfinite(vertex.z))
+                << name;
+            const float height = float(vertex.z + surface.origin.z);
+            ASSERT_GE(height, terrain_->info().min_height - 0.01F) << name;
+            ASSERT_LE(height, terrain_->info().max_height + 0.01F) << name;
+        }
+    }
+}
+
+TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
+    for (const auto& [name, camera] : cameras(terrain_->info())) {
+        const Mapping mapping =
+            persistent_grid::make_mapping(camera, terrain_->info(), 0, kMargin, kGrid);
+        const auto vertices = grid_vertices(flight_.surface(camera));
+        for (int row = 0; row < kGrid.rows; ++row) {
+            for (int column = 0; column < kGrid.columns; ++column) {
+                const glm::dvec3 ray = mapping.ray(double(column) / (kGrid.columns - 1),
+                                                   double(row) / (kGrid.rows - 1));
+                const glm::dvec2 expected = persistent_grid::ground_point(mapping, ray);
+                const glm::dvec2 found(vertices[std::size_t(row * kGrid.columns + column)]);
+                // A ray's components carry a few roundings of the sum they come from; the slope
+                // divides. Where its parts have one sign (the restricted camera) the slope does not
+                // cancel.
+                const double sum = glm::length(mapping.first) + glm::length(mapping.across) +
+                                   glm::length(mapping.down);
+                const double relative = mapping.restricted ? 1e-6 : 3e-7 * sum / -ray.z;
+                const double distance = glm::length(expected);
+                const double sideways = 3e-7 * sum * distance / glm::length(glm::dvec2(ray));
+                ASSERT_LE(glm::length(found - expected), distance * relative + sideways)
+                    << name << ", vertex " << row << ", " << column;
+            }
+        }
+    }
+}
+
+/// Bilinear height of a level at a place in samples, as the README defines it.
+double level_height(const Level& level, int l, const glm::dvec2& place) {
+    const glm::dvec2 texel = (place + 0.5) / double(1 << l) - 0.5;
+    const glm::dvec2 corner = glm::floor(texel), t = texel - corner;
+    const auto at = [&](double column, double row) {
+        return double(level.at(int(std::clamp(row, 0.0, level.rows - 1.0)),
+                               int(std::clamp(column, 0.0, level.columns - 1.0))));
+    };
+    return glm::mix(glm::mix(at(corner.x, corner.y), at(corner.x + 1, corner.y), t.x),
+                    glm::mix(at(corner.x, corner.y + 1), at(corner.x + 1, corner.y + 1), t.x), t.y);
+}
+
+TEST(PgmHeights, are_those_of_equations_3_and_4) {
+    const auto terrain = hills(201, 166);
+    const TerrainInfo& info = terrain->info();
+    Level finest{info.columns, info.rows, {terrain->samples().begin(), terrain->samples().end()}};
+    const auto levels = persistent_grid::make_pyramid(finest);
+    for (const bool parent : {true, false}) {
+        auto settings = kSettings;
+        settings.emplace_back("parent", parent ? "true" : "false");
+        Flight flight(terrain, "persistent_grid", "pgm", settings);
+        std::map<int, int> levels_seen;
+        for (const auto& [name, camera] : cameras(info)) {
+            const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, kMargin, kGrid);
+            const auto surface = flight.surface(camera);
+            for (const glm::vec3& vertex : grid_vertices(surface)) {
+                const glm::dvec3 world = surface.origin + glm::dvec3(vertex);
+                const double q = glm::length(glm::dvec2(vertex)), h = mapping.eye_height;
+                if (q > mapping.far_distance * 0.999) continue;
+                const double denominator =
+                    h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle);
+                const double r = denominator > 0
+                                     ? (q * q + h * h) * std::sin(mapping.ray_angle) / denominator
+                                     : 1e9;
+                const double texels = r / 12.5;  // the longer side of a sample
+                const int last = int(levels.size()) - 1;
+                const int l = std::clamp(int(std::floor(std::log2(texels))), 0, last);
+                // At a change of level without the parent either of the two is right.
+                const double fraction = texels / (1 << l);
+                if (!parent && (fraction < 1.001 || fraction > 1.999)) continue;
+                const glm::dvec2 place((world.x - info.origin.x) / info.spacing.x,
+                                       info.rows - 1 - (world.y - info.origin.y) / info.spacing.y);
+                double expected = level_height(levels[std::size_t(l)], l, place);
+                if (parent && l < last) {
+                    const double weight = std::clamp(fraction - 1, 0.0, 1.0);
+                    expected = glm::mix(
+                        expected, level_height(levels[std::size_t(l + 1)], l + 1, place), weight);
+                }
+                ++levels_seen[l];
+                // Float weights and heights of 160 m: 1e-5 m each; where the next ray barely meets
+                // the plane, the rounding of q in (3) is magnified, on hills of at most 120 m
+                // between levels.
+                const double magnified =
+                    denominator > 0 ? 1e-6 * (h + q) / denominator * fraction * 120 : 0;
+                ASSERT_NEAR(world.z, expected, 2e-3 + magnified) << name << ", level " << l;
+            }
+        }
+        EXPECT_GE(levels_seen.size(), 6U);
+    }
+}
+
+// As bits: an edge inside the grid is used by two triangles, one on its border by one.
+TEST_F(PgmSurface, neighbouring_triangles_share_their_vertices_to_the_bit) {
+    using Bits = std::array<std::uint32_t, 3>;
+    const auto bits = [](const glm::vec3& v) {
+        return Bits{std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y),
+                    std::bit_cast<std::uint32_t>(v.z)};
+    };
+    for (const auto& [name, camera] : cameras(terrain_->info())) {
+        const auto surface = flight_.surface(camera);
+        std::map<std::pair<Bits, Bits>, int> edges;
+        for (std::size_t i = 0; i < surface.vertices.size(); i += 3) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Bits a = bits(surface.vertices[i + k]),
+                           b = bits(surface.vertices[i + (k + 1) % 3]);
+                ASSERT_NE(a, b) << name;
+                ++edges[std::minmax(a, b)];
+            }
+        }
+        int once = 0;
+        for (const auto& [edge, count] : edges) {
+            ASSERT_LE(count, 2) << name;
+            once += count == 1;
+        }
+        EXPECT_EQ(once, 2 * (kGrid.columns - 1) + 2 * (kGrid.rows - 1)) << name;
+    }
+}
+
+TEST_F(PgmSurface, no_triangle_folds_over_in_plan) {
+    for (const auto& [name, camera] : cameras(terrain_->info())) {
+        const auto surface = flight_.surface(camera);
+        for (std::size_t i = 0; i < surface.vertices.size(); i += 3) {
+            const glm::dvec2 a(surface.vertices[i]), b(surface.vertices[i + 1]),
+                c(surface.vertices[i + 2]);
+            const glm::dvec2 u = b - a, v = c - a;
+            // All the same way round, up to the rounding of thin triangles.
+            ASSERT_GT(u.x * v.y - u.y * v.x, -1e-5 * glm::length(u) * glm::length(v))
+                << name << ", triangle " << i / 3;
+        }
+    }
+}
+
+TEST(PgmSurfaceOverAPlane, straight_down_it_is_the_uniform_grid) {
+    const auto terrain = flat(101, 101, 50);
+    Flight flight(terrain, "persistent_grid", "pgm", kSettings);
+    const Camera camera = camera_at({500, 500, 300}, 0, -90);
+    const auto vertices = grid_vertices(flight.surface(camera));
+    // Half extents on the plane 300 m below: 60 degrees and 4:3 across; 90 degrees, extended, down.
+    const double half_width = 300 * std::tan(30 * kDegree) * 4 / 3 * (1 + kMargin);
+    const double half_height = 300 * (1 + kMargin);
+    for (int row = 0; row < kGrid.rows; ++row) {
+        for (int column = 0; column < kGrid.columns; ++column) {
+            const glm::dvec3 vertex(vertices[std::size_t(row * kGrid.columns + column)]);
+            // Coordinates of about 300 in float.
+            EXPECT_NEAR(vertex.x, half_width * (2.0 * column / (kGrid.columns - 1) - 1), 2e-4);
+            EXPECT_NEAR(vertex.y, half_height * (1 - 2.0 * row / (kGrid.rows - 1)), 2e-4);
+            EXPECT_EQ(vertex.z, -250);
+        }
+    }
+}
+
+TEST(PgmSurfaceOverAPlane, minimum_near_puts_the_plane_on_the_ground) {
+    const auto terrain = flat(101, 101, 1500);
+    Flight flight(terrain, "persistent_grid", "pgm", {{"base", "minimum-near"}});
+    flight.select(camera_at({500, 500, 1600}, 0, -30));
+    EXPECT_EQ(flight.counter("base_height_m"), 1500);
+    EXPECT_EQ(flight.counter("eye_height_above_base_m"), 100);
+}
+
+}  // namespace
+}  // namespace lodbench::test
