@@ -1,7 +1,11 @@
-// What one measured frame costs: capture, drawn surface, all metrics, both pictures.
+// What one measured frame costs: capture, drawn surface, all metrics, both pictures; for the first
+// method of a run, for those that find its views of the terrain kept, and where the pixels alone
+// are measured.
 
 #include <fmt/format.h>
 
+#include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -43,6 +47,64 @@ Camera grazing_camera(const TerrainInfo& info, int frame) {
     return camera;
 }
 
+/// A folder of its own, gone at the end.
+struct ViewFolder {
+    ViewFolder() {
+        std::string pattern =
+            (std::filesystem::temp_directory_path() / "lodbench-views-XXXXXX").string();
+        if (mkdtemp(pattern.data()) == nullptr) {
+            throw EnvironmentError(fmt::format("cannot make the folder {}", pattern));
+        }
+        path = pattern;
+    }
+    ~ViewFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+    ViewFolder(const ViewFolder&) = delete;
+    ViewFolder& operator=(const ViewFolder&) = delete;
+    std::filesystem::path path;
+};
+
+/// Of one frame: medians.
+struct Measured {
+    double wall_s = 0, cpu_s = 0;
+    double triangles = 0;
+    std::uint64_t samples_in_view = 0, samples_seen = 0;
+};
+
+Measured measure(run::Stage& stage, const Options& options,
+                 const std::shared_ptr<const terrain::HeightField>& terrain,
+                 const run::ViewCache& cache, measure::Extent extent) {
+    run::FrameMeasurer measurer(stage, 1.0, terrain, cache, extent);
+    std::vector<double> walls, cpus;
+    results::FrameRecord last;
+    for (int frame = 0; frame < options.repetitions + 1; ++frame) {
+        stage.select(grazing_camera(terrain->info(), frame), {frame, frame / 60.0});
+        results::FrameRecord record;
+        record.triangles = stage.count_primitives();
+        const std::clock_t cpu = std::clock();
+        const double wall = seconds_of([&] {
+            measurer.take(frame, record, &last);
+            measurer.measure(record);
+        });
+        if (frame > 0) {  // the first allocates and compiles
+            walls.push_back(wall);
+            cpus.push_back(double(std::clock() - cpu) / CLOCKS_PER_SEC);
+        }
+        last = record;
+    }
+    results::CellResult result;
+    measurer.finish(result);
+    const auto per_frame = [&](const char* field) {
+        return result.truth[field]["count"].asUInt64() / unsigned(options.repetitions + 1);
+    };
+    const bool all = extent == measure::Extent::all;
+    return {*measure::percentile(walls, 0.5), *measure::percentile(cpus, 0.5),
+            double(*last.triangles), all ? per_frame("screen_error_px") : 0,
+            all ? per_frame("visible_error_px") : 0};
+}
+
 void measure_frames(const Options& options, int size) {
     terrain::TerrainSource source;
     source.synthetic = "ridged";
@@ -59,36 +121,21 @@ void measure_frames(const Options& options, int size) {
     const double before = memory_bytes("VmRSS");
     forget_peak();
 
-    run::FrameMeasurer measurer(stage, 1.0, terrain);
-    std::vector<double> taken, measured;
-    results::FrameRecord last;
-    for (int frame = 0; frame < options.repetitions + 1; ++frame) {
-        stage.select(grazing_camera(terrain->info(), frame), {frame, frame / 60.0});
-        results::FrameRecord record;
-        record.triangles = stage.count_primitives();
-        const double take = seconds_of([&] { measurer.take(frame, record, &last); });
-        const double rest = seconds_of([&] { measurer.measure(record); });
-        if (frame > 0) {  // the first allocates and compiles
-            taken.push_back(take);
-            measured.push_back(rest);
-        }
-        last = record;
-    }
-    results::CellResult result;
-    measurer.finish(result);
+    const ViewFolder views;
+    const run::ViewCache cache(views.path, "benchmark", terrain->info().checksum, "");
+    const Measured alone = measure(stage, options, terrain, cache, measure::Extent::all);
     const double own = memory_bytes("VmHWM") - before + field_bytes;
-    const auto median = [](const std::vector<double>& values) {
-        return *measure::percentile(values, 0.5);
-    };
-    const double seconds = median(taken) + median(measured);
-    fmt::print("truth of a frame of {3}, ridged {0} x {0}, {1} x {2} pixels:\n", size,
-               first.viewport.width, first.viewport.height, method.id);
-    fmt::print("  {:.3f} s ({:.3f} capture and surface, {:.3f} metrics and pictures)\n", seconds,
-               median(taken), median(measured));
-    fmt::print(
-        "  {:.0f} triangles, {} samples in view, {} seen\n", double(*last.triangles),
-        result.truth["screen_error_px"]["count"].asUInt64() / unsigned(options.repetitions + 1),
-        result.truth["visible_error_px"]["count"].asUInt64() / unsigned(options.repetitions + 1));
+    const Measured further = measure(stage, options, terrain, cache, measure::Extent::all);
+    const Measured pixels = measure(stage, options, terrain, cache, measure::Extent::pixels);
+    fmt::print("truth of a frame of {3}, ridged {0} x {0}, {1} x {2} pixels, wall (CPU) seconds:\n",
+               size, first.viewport.width, first.viewport.height, method.id);
+    for (const auto& [words, cost] : {std::pair{"the first method of a run", alone},
+                                      {"each other one", further},
+                                      {"a probe of match", pixels}}) {
+        fmt::print("  {:<26} {:.3f} ({:.3f})\n", words, cost.wall_s, cost.cpu_s);
+    }
+    fmt::print("  {:.0f} triangles, {} samples in view, {} seen\n", alone.triangles,
+               alone.samples_in_view, alone.samples_seen);
     fmt::print("  memory {:.2f} x the height field, it included\n", own / field_bytes);
     stage.release();
 }
