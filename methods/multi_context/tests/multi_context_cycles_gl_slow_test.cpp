@@ -57,7 +57,7 @@ TEST(MultiContextCycles, a_thousand_leave_no_thread_context_object_or_byte) {
     const auto terrain = hills(129, 129);
     const run::PluginLibrary library(plugin);
     const run::MethodInfo info =
-        run::find_method({{plugin, library.methods(), ""}}, "multi-context", plugin);
+        run::find_method({{plugin, library.methods(), "", {}}}, "multi-context", plugin);
     int contexts = 0;
     const auto give_contexts = [&] {
         device.set_context_factory(
