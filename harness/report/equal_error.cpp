@@ -47,6 +47,7 @@ EqualRow row_of(const results::CellGroup& group, const EqualFlight& flight,
     row.slowest_ms = middle("frame_ms", "max");
     row.triangles = middle("triangles", "mean");
     row.error = results::pixel_error(group, results::ErrorMetric::p999);
+    row.settled = middle("pixel_error_px", "p999");
     row.claimed = middle("claimed_px", nullptr);
     row.honesty = middle("bound_honesty", nullptr);
     if (row.error && flight.meets(*row.error)) {
@@ -123,6 +124,11 @@ std::vector<std::string> off_lines(const EqualFlight& flight, const std::vector<
             lines.push_back(fmt::format("{} (off): it has no knob to set.", shown));
         } else if (flight.as_kept && reason != flight.off.end()) {
             lines.push_back(fmt::format("{} (off): {}.", shown, reason->second));
+        } else if (row.error && row.settled && flight.meets(*row.settled)) {
+            lines.push_back(
+                fmt::format("{} (off): at this machine's pace its selection comes late; caught up, "
+                            "it shows {}.",
+                            shown, px(*row.settled)));
         } else {
             unexplained.push_back(shown);
         }

@@ -41,7 +41,8 @@ struct EqualRow {
     std::optional<std::string> knob;             ///< "tau = 1.5"; nothing where the method has none
     std::optional<double> frame_ms, slowest_ms;  ///< median and greatest of a flight's frames
     std::optional<double> triangles;
-    std::optional<double> error;    ///< pixels
+    std::optional<double> error;    ///< pixels; of an asynchronous method at the flight's pace
+    std::optional<double> settled;  ///< pixels, its background work finished
     std::optional<double> claimed;  ///< pixels
     std::optional<double> honesty;  ///< greatest measured screen error / claimed
     Place place = Place::off;

@@ -12,6 +12,7 @@
 #include "api/error.h"
 #include "fuzz/refusal.h"
 #include "fuzz/seeds.h"
+#include "scenario/camera_track.h"
 #include "scenario/scenario.h"
 #include "support/fake_terrain.h"
 
@@ -73,6 +74,14 @@ void check_numbers(const scenario::Scenario& scenario) {
     for (const auto* frames : {&scenario.measure.shots, &scenario.measure.economy}) {
         for (const int frame : *frames) require(frame >= 0 && frame < scenario.frames, "a frame");
     }
+    if (terrain.upsampling) {
+        require(terrain.upsampling->factor >= 2, "a factor");
+        require_finite({terrain.upsampling->fractal_amplitude}, "a finite fractal");
+    }
+    if (scenario.equal) {
+        require(scenario.equal->error_px > 0 && scenario.equal->tolerance > 0, "an equal error");
+        require_finite({scenario.equal->error_px, scenario.equal->tolerance}, "finite errors");
+    }
     for (const scenario::MethodRequest& method : scenario.methods) {
         require(!method.id.empty(), "a method's id");
         for (const auto& [key, values] : method.settings) require(!values.empty(), "a setting");
@@ -80,16 +89,14 @@ void check_numbers(const scenario::Scenario& scenario) {
     check_path_spec(scenario.path);
 }
 
-/// First, second, middle and last camera.
+/// Cameras: the first of a warm-up that flies, first, second, middle and last.
 void check_flight(const scenario::Scenario& scenario) {
     FakeTerrain terrain(5, 9);
     terrain.height = [](int row, int column) { return float(100 * row - 30 * column); };
-    const auto path =
-        scenario::make_path(scenario.path, scenario.frames, scenario.rate_hz, terrain);
-    for (const int frame :
-         {0, std::min(1, scenario.frames - 1), scenario.frames / 2, scenario.frames - 1}) {
-        Camera camera;
-        path->place(frame, camera);
+    const scenario::CameraTrack track(scenario, terrain);
+    for (const int frame : {track.first_frame(), 0, std::min(1, scenario.frames - 1),
+                            scenario.frames / 2, scenario.frames - 1}) {
+        const Camera camera = track.camera(frame);
         const glm::dvec3& eye = camera.position;
         require_finite({eye.x, eye.y, eye.z}, "a finite camera");
         require(std::abs(glm::length(camera.orientation) - 1) < 1e-9, "an orientation");
@@ -112,7 +119,10 @@ std::vector<std::string> seeds() {
     const std::string terrain =
         "[terrain]\nsynthetic = \"ridged\"\nrows = 65\ncolumns = 33\nseed = 3\n"
         "spacing = [10, 20.5]\nvertical_scale = 2\nvertical_offset = -1.5\n"
-        "origin = [1e3, -2e3]\n[terrain.shape]\nheight = 600\nbase = -10\n";
+        "origin = [1e3, -2e3]\n[terrain.shape]\nheight = 600\nbase = -10\n"
+        "[terrain.upsample]\nfactor = 4\nfractal = 2.5\nseed = 9\n"
+        "[equal]\nerror_px = 1\ntolerance = 0.1\n[equal.knobs]\npgm = 240\n[equal.off]\npgm = "
+        "'far'\n";
     const std::string rest =
         "[camera]\nvertical_fov = 45\nnear = 0.5\n[viewport]\nwidth = 320\nheight = 200\n"
         "[measure]\nevery = 5\ntruth = false\nshots = [0, 9]\neconomy = [3]\nbudget_ms = 33\n"
@@ -122,7 +132,8 @@ std::vector<std::string> seeds() {
     std::vector<std::string> seeds;
     for (const char* flight :
          {"kind = \"line\"\nrelative = true\nstart = [0.1, 0.5, 900]\nend = [0.9, 0.5, 300]\n"
-          "pitch = -30\nroll = 5\nframes = 10\nrate_hz = 30\nwarmup_frames = 1\n",
+          "pitch = -30\nroll = 5\nframes = 10\nrate_hz = 30\nwarmup_frames = 1\nwarmup_flies = "
+          "true\n",
           "kind = \"line\"\nstart = [0, 0, 900]\nheading = 90\nspeed = 250\nabove_ground = "
           "true\nframes = 10\n",
           "kind = \"spline\"\nframes = 10\n[[flight.keyframe]]\nposition = [0, 0, 50]\nheading = "

@@ -92,6 +92,15 @@ TEST_F(EqualError, what_is_off_is_said_with_the_reason_that_is_known) {
                 HasSubstr("- other shows 3 px (off): it has no knob to set."));
 }
 
+TEST_F(EqualError, an_asynchronous_method_is_off_by_what_it_shows_at_pace_and_said_to_be_late) {
+    Json::Value late = cell("b", 20, 2.1);
+    late["pixel_error_realtime_px"]["p999"] = 4;
+    EXPECT_THAT(text({cell("a", 30, 2), late}),
+                HasSubstr("- b shows 4 px (off): at this machine's pace its selection comes late; "
+                          "caught up, it shows 2.1 px.\n"));
+    EXPECT_THAT(verdict({cell("a", 30, 2), late}), HasSubstr(") a is fastest"));
+}
+
 TEST_F(EqualError, nobody_wins_where_nobody_shows_the_error) {
     EXPECT_EQ(verdict({cell("a", 30, 1), cell("whole", 400, 0)}),
               "No method shows the error that all were to show (99.9 % of the pixels within 2 px "
