@@ -238,6 +238,10 @@ std::string noise_of(const CellResult& result) {
     // Where a GPU draws and its timer is not believed, the wait for it cannot be told from another.
     if (!result.software && !knows_gpu) return {};
     if (wall_ms < kLong_ms || wall_ms <= kFar * (cpu_ms + gpu_ms)) return {};
+    // Being woken when the GPU is done takes a while too, which counts where frames are short.
+    constexpr double kWaking_ms = 0.5;
+    const double idle_ms = (wall_ms - cpu_ms - gpu_ms) / double(result.frames.size());
+    if (!result.software && idle_ms < kWaking_ms) return {};
     return fmt::format(
         "its frames took {:.0f} ms, and {:.0f} ms of CPU{} time were spent on them: it waited for "
         "other programs, a quota or the disk, and its times say how long",

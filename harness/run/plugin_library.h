@@ -38,7 +38,7 @@ struct PluginListing {
     std::filesystem::path path;
     std::vector<MethodInfo> methods;  ///< that are used
     std::string refusal;
-    std::vector<std::string> left_out;  ///< of each method that another plugin holds too: the words
+    std::vector<std::string> left_out = {};  ///< in words: methods that another plugin holds too
 };
 
 /// Folders in the order of search: `extra` (--plugin-dir), LODBENCH_PLUGIN_PATH, then next to the

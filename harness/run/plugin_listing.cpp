@@ -256,8 +256,7 @@ std::vector<PluginListing> list_plugins(const std::vector<fs::path>& folders) {
                                 {},
                                 fmt::format("plugin folder {} cannot be read: {}; correct "
                                             "--plugin-dir or LODBENCH_PLUGIN_PATH",
-                                            folder.string(), error.message()),
-                                {}});
+                                            folder.string(), error.message())});
             folder_of.push_back(number);
             continue;
         }

@@ -34,7 +34,7 @@ Stage::Stage(StageSetup setup, VitalSigns& signs)
       library_((signs.enter(Call::open_plugin), setup_.plugin)) {
     end_copies("a constructor");
     restore_process("a constructor that runs while it is loaded");
-    info_ = find_method({{setup_.plugin, library_.methods(), "", {}}}, setup_.method,
+    info_ = find_method({{setup_.plugin, library_.methods(), ""}}, setup_.method,
                         "plugin " + setup_.plugin.string());
     params_ = make_params(info_, setup_.settings, "settings of " + setup_.method);
     signs_.enter(Call::none);  // not before: a plugin that was exchanged is at fault for the above

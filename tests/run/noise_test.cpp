@@ -44,6 +44,9 @@ TEST(Noise, of_a_cell_on_a_gpu_counts_its_time_and_is_untold_where_that_is_unkno
     EXPECT_THAT(noise_of(flown(10, 100, 10, 50, false)),
                 HasSubstr("1000 ms, and 600 ms of CPU and GPU time"));
     EXPECT_EQ(noise_of(flown(10, 100, 10, {}, false)), "");
+    EXPECT_EQ(noise_of(flown(5000, 0.5, 0.05, 0.05, false)), "") << "it was woken late";
+    EXPECT_NE(noise_of(flown(5000, 0.5, 0.05, {}, true)), "") << "nothing is waited for";
+    EXPECT_NE(noise_of(flown(1000, 1, 0.2, 0.2, false)), "");
 }
 
 TEST(Noise, of_a_setting_names_the_repetitions) {
