@@ -36,7 +36,7 @@ if(host_headers OR NOT EXISTS ${WORK_DIR}/moved/include/lodbench/gl/device.h)
 endif()
 
 step("list of the installed methods" ${lodbench} list --json)
-if(NOT output MATCHES "\"id\":\"full-grid\"" OR NOT output MATCHES "${WORK_DIR}/moved/.*/full_grid.so")
+if(NOT output MATCHES "\"id\":\"template\"" OR NOT output MATCHES "${WORK_DIR}/moved/.*/template_method.so")
   stop("the installed program does not find its own plugins:\n${output}")
 endif()
 
