@@ -6,7 +6,8 @@ set(package_subdir ${CMAKE_INSTALL_LIBDIR}/cmake/lodbench)
 
 install(TARGETS lodbench EXPORT lodbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS lodbench_plugin EXPORT lodbench ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/lodbench)
-install(DIRECTORY harness/api harness/gl DESTINATION ${include_subdir} FILES_MATCHING PATTERN *.h)
+install(DIRECTORY harness/api harness/gl DESTINATION ${include_subdir} FILES_MATCHING PATTERN *.h
+        PATTERN host EXCLUDE)  # gl/host is the harness's own
 install(FILES ${PROJECT_BINARY_DIR}/generated/api/abi_tag.h DESTINATION ${include_subdir}/api)
 install(DIRECTORY shaders/common DESTINATION ${include_subdir})  # blocks.glsl is compiled as C++ too
 

@@ -48,3 +48,12 @@ install_packages() {
 
 # One job for each processor that this process may use.
 job_count() { nproc; }
+
+# configure PRESET [OPTION]...: scripts/demo and scripts/test share a folder and its flags, so that neither builds again
+# what the other has built. Warnings are errors with the compiler that they are known of, Debian 12's.
+configure() {
+    local preset=$1 flags=()
+    shift
+    [[ $("${CXX:-c++}" -dumpversion 2>/dev/null) != 12 ]] || flags=(-DLODBENCH_WERROR=ON)
+    (cd "$root" && cmake --preset "$preset" --log-level=WARNING "${flags[@]}" "$@")
+}

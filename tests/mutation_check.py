@@ -19,7 +19,8 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "support"))
+import source_copy  # noqa: E402
 
 # Quick ones first: most mutants die before the second, whose tests draw whole frames.
 TESTS = ["measure_test", "measure_gl_test"]
@@ -258,44 +259,15 @@ def replaced(path, old, new):
     return text.replace(old, new)
 
 
-def sources(work):
-    """Paths below ROOT of all that may be a source: neither what was built nor what was measured."""
-    found = set()
-    for name, folders, files in os.walk(ROOT):
-        folder = pathlib.Path(name)
-        if folder == work or "CMakeCache.txt" in files:
-            folders.clear()
-            continue
-        skipped = {".git", "__pycache__"} | ({"build", "lodbench-results", "shared"} if folder == ROOT else set())
-        folders[:] = [child for child in folders if child not in skipped]
-        found.update((folder / file).relative_to(ROOT) for file in files)
-    return found
-
-
 class Copy:
     """The sources in a folder of their own, and what is built of them."""
 
     def __init__(self, work, jobs):
         self.work = work
-        self.source = work / "source"
+        self.source = source_copy.update(work, {TRIM[0]: replaced(source_copy.ROOT / TRIM[0], *TRIM[1:])})
         self.build_folder = work / "build"
         self.jobs = jobs
         self.original = None  # path and text of the file that a mutant has broken
-
-    def update(self):
-        """Brings the copy to the state of ROOT; what is the same keeps its time, and is not built again."""
-        wanted = sources(self.work)
-        for path in [path for path in self.source.rglob("*") if path.is_file()]:
-            if path.relative_to(self.source) not in wanted:
-                path.unlink()
-        for name in wanted:
-            content = (ROOT / name).read_bytes()
-            if name == pathlib.Path(TRIM[0]):
-                content = replaced(ROOT / name, *TRIM[1:]).encode("utf-8")
-            copy = self.source / name
-            if not copy.exists() or copy.read_bytes() != content:
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                copy.write_bytes(content)
 
     def run(self, command, what):
         try:
@@ -357,7 +329,6 @@ def check(mutants, work, jobs):
     """Tries all mutants; returns how many survived."""
     work.mkdir(parents=True, exist_ok=True)
     copy = Copy(work, jobs)
-    copy.update()
     # Before anything is built: texts that have gone are told at once.
     for mutant in mutants:
         replaced(copy.source / mutant.path, mutant.old, mutant.new)

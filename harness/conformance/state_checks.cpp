@@ -6,7 +6,7 @@
 #include <set>
 
 #include "conformance/session.h"
-#include "gl/alive_objects.h"
+#include "gl/host/alive_objects.h"
 
 namespace lodbench::conformance {
 

@@ -92,7 +92,7 @@ Device::Device(Device& host) : Device() {
 }
 
 Device::~Device() {
-    end_capture();
+    capture_.reset();
     glDebugMessageCallback(nullptr, nullptr);
 }
 

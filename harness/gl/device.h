@@ -102,15 +102,7 @@ public:
     /// KHR_debug, synchronous.
     [[nodiscard]] std::vector<std::string> take_errors();
 
-    /// Between begin and end every draw call is fed back instead of rasterised and handed to
-    /// `sink`, in drawing order, one call of `sink` per draw call. Every draw call must be
-    /// idempotent: it is issued again when its triangles did not fit. The span is valid during the
-    /// call of `sink` only. Throws ContractError for a capture within a capture or a draw within
-    /// someone's GL_PRIMITIVES_GENERATED query, EnvironmentError when the driver has no memory for
-    /// the triangles. For the harness; never timed.
-    void begin_capture(CaptureSink sink);
-    /// May be called after any exception; does nothing when no capture is open.
-    void end_capture() noexcept;
+    /// Whether the host looks at the draw calls instead of having them rasterised.
     [[nodiscard]] bool capturing() const { return capture_ != nullptr; }
 
     /// For the harness: how further contexts are made.
@@ -137,6 +129,8 @@ public:
     };
 
 private:
+    friend void begin_capture(Device& device, CaptureSink sink);
+    friend void end_capture(Device& device) noexcept;
     template <typename Draw>  // a std::function would allocate in the timed path
     void submit(const Program& program, const VertexArray& vertices, GLenum mode, const Draw& draw);
     void capture_draw(const std::function<void()>& draw);

@@ -6,6 +6,7 @@
 
 #include "api/error.h"
 #include "gl/device.h"
+#include "gl/host/draw_capture.h"
 
 namespace lodbench::gl {
 
@@ -97,18 +98,18 @@ struct Device::Capture {
     }
 };
 
-void Device::begin_capture(CaptureSink sink) {
-    if (capture_) throw ContractError("begin_capture: a capture is already open");
+void begin_capture(Device& device, CaptureSink sink) {
+    if (device.capture_) throw ContractError("begin_capture: a capture is already open");
     if (!sink) throw ContractError("begin_capture: expected a sink for the triangles");
-    capture_.reset(new Capture(std::move(sink)));
+    device.capture_.reset(new Device::Capture(std::move(sink)));
 }
 
 void Device::CloseCapture::operator()(Capture* capture) const noexcept {
     delete capture;
 }
 
-void Device::end_capture() noexcept {
-    capture_.reset();
+void end_capture(Device& device) noexcept {
+    device.capture_.reset();
 }
 
 void Device::capture_draw(const std::function<void()>& draw) {

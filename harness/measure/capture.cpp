@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "api/error.h"
+#include "gl/host/draw_capture.h"
 
 namespace lodbench::measure {
 
@@ -76,7 +77,7 @@ CapturedSurface capture(gl::Device& device, const CaptureView& view,
     CapturedSurface surface;
     surface.origin = view.view.origin;
     const auto scale = static_cast<float>(view.scale);
-    device.begin_capture([&](std::span<const glm::vec4> vertices) {
+    gl::begin_capture(device, [&](std::span<const glm::vec4> vertices) {
         for (const glm::vec4& vertex : vertices) {
             // w is 0x + 0y + 0z + 1: exactly 1, or NaN where a coordinate is infinite or NaN.
             if (vertex.w != 1.0F && !std::isnan(vertex.w)) {
@@ -90,7 +91,7 @@ CapturedSurface capture(gl::Device& device, const CaptureView& view,
     });
     struct End {
         gl::Device& device;
-        ~End() { device.end_capture(); }
+        ~End() { gl::end_capture(device); }
     } const end{device};
     draw();
     return surface;

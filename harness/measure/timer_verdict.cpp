@@ -6,9 +6,9 @@
 #include <chrono>
 #include <vector>
 
+#include "gl/host/state.h"
 #include "gl/objects.h"
 #include "gl/program.h"
-#include "gl/state.h"
 
 namespace lodbench::measure {
 

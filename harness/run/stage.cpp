@@ -12,7 +12,7 @@
 #include "base/hash.h"
 #include "base/printable.h"
 #include "gl/frame_blocks.h"
-#include "gl/state.h"
+#include "gl/host/state.h"
 
 namespace lodbench::run {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "gl/device.h"
+#include "gl/host/timestamp_ring.h"
 #include "gl/objects.h"
-#include "gl/timestamp_ring.h"
 #include "measure/timer_verdict.h"
 
 namespace lodbench::run {

@@ -81,7 +81,7 @@ class Documents(unittest.TestCase):
     def test_results_page_names_every_field_of_a_cell(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out"
-            status, text = run("run", str(SOURCE / "scenarios/trade/high.toml"), "--method", "full-grid", "--frames", "2", "--size", "64x48",
+            status, text = run("run", str(SOURCE / "scenarios/trade/high.toml"), "--method", "template", "--frames", "2", "--size", "64x48",
                                "--repeat", "1", "--out", str(out))
             self.assertEqual(status, 0, text)
             cell = json.loads((out / "cells.jsonl").read_text().splitlines()[0])

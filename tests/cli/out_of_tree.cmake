@@ -30,8 +30,13 @@ step("install" ${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/inst
 file(RENAME ${WORK_DIR}/installed ${WORK_DIR}/moved)
 set(lodbench ${WORK_DIR}/moved/bin/lodbench)
 
+file(GLOB_RECURSE host_headers ${WORK_DIR}/moved/include/*/gl/host/*)
+if(host_headers OR NOT EXISTS ${WORK_DIR}/moved/include/lodbench/gl/device.h)
+  stop("expected the headers of plugins, gl/device.h among them, and none of gl/host; found of the latter: ${host_headers}")
+endif()
+
 step("list of the installed methods" ${lodbench} list --json)
-if(NOT output MATCHES "\"id\":\"full-grid\"" OR NOT output MATCHES "${WORK_DIR}/moved/.*/full_grid.so")
+if(NOT output MATCHES "\"id\":\"template\"" OR NOT output MATCHES "${WORK_DIR}/moved/.*/template_method.so")
   stop("the installed program does not find its own plugins:\n${output}")
 endif()
 

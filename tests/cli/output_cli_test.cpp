@@ -52,7 +52,8 @@ TEST_F(Output, progress_that_cannot_be_written_does_not_end_a_run) {
 
 TEST_F(Output, what_was_asked_for_and_is_lost_gives_status_2_and_words) {
     const std::vector<std::vector<std::string>> commands = {
-        {"list"}, {"list", "--json"}, {"describe", "pgm"}, {"--help"}, {"run", "--help"}, run()};
+        {"list"},   {"list", "--json"}, {"describe", "template"},
+        {"--help"}, {"run", "--help"},  run()};
     for (const auto& command : commands) {
         const Finished finished =
             run_lodbench(command, scratch_.path(), [] { redirect(1, "/dev/full"); });

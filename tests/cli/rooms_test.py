@@ -1,4 +1,4 @@
-"""What each room of the harness may include: methods are seen by nobody, the report by the command line alone.
+"""What each folder may include: methods are seen by nobody, the report by the command line alone.
 
 usage: rooms_test.py SOURCE_DIR
 """
@@ -13,7 +13,7 @@ SOURCE = pathlib.Path(sys.argv.pop(1)).resolve()
 MAY_INCLUDE = {
     "api": set(),
     "base": {"api"},
-    "gl": {"api", "common"},
+    "gl": {"api", "common"},  # gl/host is not for methods: see below
     "platform": {"api", "gl"},
     "terrain": {"api", "base"},
     "scenario": {"api", "base", "terrain"},
@@ -26,13 +26,32 @@ MAY_INCLUDE = {
 }
 
 
-def includes(room):
-    for path in sorted((SOURCE / "harness" / room).rglob("*")):
-        if path.suffix in (".h", ".cpp"):
+METHODS = {path.parent.name for path in (SOURCE / "methods").glob("*/CMakeLists.txt")} - {"common"}
+
+
+def sources(folder, *, without=()):
+    """The C++ files below a folder, and which they include: place, line and what stands in quotes."""
+    for path in sorted((SOURCE / folder).rglob("*")):
+        inside = path.relative_to(SOURCE / folder).parts
+        if path.suffix in (".h", ".cpp") and not set(without) & set(inside):
             for number, line in enumerate(path.read_text().splitlines(), 1):
-                found = re.match(r'#include "([\w/.]+)/[\w.]+"', line)
+                found = re.match(r'#include "([\w/.]+)"', line)
                 if found:
-                    yield f"{path.relative_to(SOURCE)}:{number}: {line}", found.group(1).split("/")[0]
+                    yield path, f"{path.relative_to(SOURCE)}:{number}: {line}", found.group(1)
+
+
+def includes(room):
+    for _, place, name in sources(f"harness/{room}"):
+        if "/" in name:
+            yield place, name.split("/")[0]
+
+
+def ids():
+    """What methods are called, and the names of their plugins."""
+    for path in (SOURCE / "methods").rglob("*.cpp"):
+        yield from re.findall(r'\.id = "([\w-]+)"', path.read_text())
+    for path in (SOURCE / "methods").glob("*/CMakeLists.txt"):
+        yield from re.findall(r"lodbench_add_method\((\w+)", path.read_text())
 
 
 class Rooms(unittest.TestCase):
@@ -47,6 +66,39 @@ class Rooms(unittest.TestCase):
                 seen += 1
                 self.assertIn(other, allowed | {room}, place)
         self.assertGreater(seen, 500)
+
+    def test_nothing_but_methods_includes_a_method(self):
+        seen = 0
+        for folder in ("harness", "benchmarks", "tests"):
+            for path, place, name in sources(folder):
+                seen += 1
+                elsewhere = any((SOURCE / root / name).exists() for root in ("harness", "shaders", "tests"))
+                self.assertFalse((SOURCE / "methods" / name).exists() and not elsewhere, place)
+                self.assertFalse((path.parent / name).resolve().is_relative_to(SOURCE / "methods"), place)
+        self.assertGreater(seen, 1000)
+
+    def test_a_method_includes_no_other_method(self):
+        self.assertGreaterEqual(len(METHODS), 7)
+        for method in METHODS | {"common"}:
+            for _, place, name in sources(f"methods/{method}"):
+                self.assertNotIn(name.split("/")[0], METHODS - {method} if "/" in name else (), place)
+
+    def test_a_plugin_includes_what_is_installed(self):
+        seen = 0
+        for _, place, name in sources("methods", without=("tests", "bench", "tools")):
+            seen += 1
+            folder = name.rpartition("/")[0]
+            self.assertTrue(folder in {"", "api", "gl", "common"} | METHODS, place)
+        self.assertGreater(seen, 100)
+
+    def test_harness_and_benchmarks_name_no_method(self):
+        names = set(ids()) - {"template", "template_method"}  # which new-method copies
+        self.assertGreater(len(names), 10)
+        for folder in ("harness", "benchmarks"):
+            for path in sorted((SOURCE / folder).rglob("*")):
+                if path.is_file():
+                    found = names & set(re.findall(r'"([\w-]+)(?:\.so)?"', path.read_text()))
+                    self.assertFalse(found, f"{path.relative_to(SOURCE)} names {found}")
 
 
 if __name__ == "__main__":

@@ -39,7 +39,7 @@ protected:
                "warmup_frames = 0\nstart = [20, 20, 3000]\nend = [100, 100, 3000]\npitch = -60\n";
         std::vector<std::string> arguments = {
             "run",      file("tiny.toml"), "--out",    file("out"),
-            "--method", "full-grid",       "--repeat", "2"};
+            "--method", "template",        "--repeat", "2"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_lodbench(arguments, folder_.path());
     }

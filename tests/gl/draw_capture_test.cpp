@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 
 #include "api/error.h"
+#include "gl/host/draw_capture.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "support/context_for_test.h"
@@ -71,12 +72,12 @@ Program row(Device& device) {
 template <typename Draw>
 Vertices captured(Device& device, const Draw& draw, std::vector<std::size_t>* calls = nullptr) {
     Vertices all;
-    device.begin_capture([&](std::span<const glm::vec4> vertices) {
+    begin_capture(device, [&](std::span<const glm::vec4> vertices) {
         all.insert(all.end(), vertices.begin(), vertices.end());
         if (calls != nullptr) calls->push_back(vertices.size());
     });
     draw();
-    device.end_capture();
+    end_capture(device);
     return all;
 }
 
@@ -240,7 +241,7 @@ TEST(DrawCapture, count_equals_primitives_generated_of_the_picture) {
     // A query of the caller's own would be closed by the capture's: refused in words.
     generated.begin();
     EXPECT_THROW((void)captured(gl.device, draw), ContractError);
-    gl.device.end_capture();
+    end_capture(gl.device);
     generated.end();
 }
 
@@ -278,10 +279,10 @@ TEST(DrawCapture, sink_that_throws_leaves_the_device_usable) {
     GlTest gl;
     const Mesh mesh(gl.device);
     const Program program = plain(gl.device);
-    gl.device.begin_capture([](std::span<const glm::vec4>) { throw InputError("enough"); });
+    begin_capture(gl.device, [](std::span<const glm::vec4>) { throw InputError("enough"); });
     EXPECT_THROW(gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3), InputError);
-    EXPECT_THROW(gl.device.begin_capture([](std::span<const glm::vec4>) {}), ContractError);
-    gl.device.end_capture();
+    EXPECT_THROW(begin_capture(gl.device, [](std::span<const glm::vec4>) {}), ContractError);
+    end_capture(gl.device);
     EXPECT_FALSE(glIsEnabled(GL_RASTERIZER_DISCARD));
     EXPECT_EQ(captured(gl.device,
                        [&] { gl.device.draw_arrays(program, mesh.vertices, GL_TRIANGLES, 0, 3); })

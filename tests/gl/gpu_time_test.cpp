@@ -1,9 +1,9 @@
 // The verdict on the driver's timer, and the ring of timestamps.
 #include <gtest/gtest.h>
 
-#include "gl/alive_objects.h"
-#include "gl/state.h"
-#include "gl/timestamp_ring.h"
+#include "gl/host/alive_objects.h"
+#include "gl/host/state.h"
+#include "gl/host/timestamp_ring.h"
 #include "measure/timer_verdict.h"
 #include "support/context_for_test.h"
 

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "api/error.h"
-#include "gl/alive_objects.h"
+#include "gl/host/alive_objects.h"
+#include "gl/host/state.h"
 #include "gl/objects.h"
 #include "gl/program.h"
-#include "gl/state.h"
 #include "support/context_for_test.h"
 
 namespace lodbench::gl {

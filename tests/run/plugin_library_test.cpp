@@ -151,7 +151,7 @@ MethodInfo method_with_params() {
 }
 
 TEST(PluginLibrary, code_stays_mapped_for_threads_that_are_still_leaving_it) {
-    const std::string path = LODBENCH_PLUGINS "/lindstrom.so";
+    const std::string path = LODBENCH_PLUGINS "/template_method.so";
     { const PluginLibrary library(path); }
     void* still = dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD);
     EXPECT_NE(still, nullptr);

@@ -100,36 +100,5 @@ TEST(Stage, signs_of_life_name_the_call_in_which_the_plugin_is) {
     EXPECT_GT(signs.beats.load(), beats);
 }
 
-struct Flyer {
-    const char* plugin;
-    const char* method;
-};
-void PrintTo(const Flyer& flyer, std::ostream* stream) {
-    *stream << flyer.method;
-}
-
-class CountedTriangles : public testing::TestWithParam<Flyer> {};
-
-TEST_P(CountedTriangles, are_those_captured_from_every_side) {
-    Flight flight(hills(100, 131), GetParam().plugin, GetParam().method);
-    std::uint64_t most = 0;
-    for (const Camera& camera :
-         {camera_at({512600, -2900, 900}, 40, -35), camera_at({512600, -2900, 250}, 200, 0, 20),
-          camera_at({512600, -2900, 2500}, 0, -90), camera_at({505000, -3000, 900}, 270, 10)}) {
-        flight.select(camera);
-        const std::uint64_t count = flight.stage().count_primitives();
-        EXPECT_EQ(count, flight.stage().capture().triangle_count());
-        EXPECT_EQ(count, flight.stage().count_primitives()) << "a capture changes nothing";
-        most = std::max(most, count);
-    }
-    EXPECT_GT(most, 1000U);
-}
-
-INSTANTIATE_TEST_SUITE_P(methods, CountedTriangles,
-                         testing::Values(Flyer{"full_grid", "full-grid"},
-                                         Flyer{"lindstrom", "lindstrom"},
-                                         Flyer{"persistent_grid", "pgm"}),
-                         [](const auto& flyer) { return std::string(flyer.param.plugin); });
-
 }  // namespace
 }  // namespace lodbench::test

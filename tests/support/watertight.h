@@ -84,17 +84,15 @@ protected:
             << "tau " << tau << ", frame " << frame << ": " << checked.output;
     }
 
-    /// Far away at a huge tolerance nothing is refined: four triangles, four whole patches or a
-    /// tile.
+    /// Far away at a huge tolerance nothing is refined: four of what is smallest, which has so many
+    /// segments a side.
     void expect_base_mesh(const std::string& method, const std::string& settings,
-                          const Ground& ground, int patch_samples) {
+                          const Ground& ground, int segments) {
         const std::string far = scenario(ground.terrain, "[0, 0, 9e7]", "[0, 0, 1e8]", -90);
         const Outcome made = lodbench(fmt::format(
             "mesh {} --before-clipping --set culling=false --set tau=1000 {} --scenario {} -o {}",
             method, settings, far, file("m.ply")));
         ASSERT_EQ(made.status, 0) << made.output;
-        const bool tiles = method == "dltq" || method == "sltq-cpu" || method == "fu";
-        const int segments = tiles ? 64 : method == "static-patches" ? patch_samples - 1 : 1;
         const Outcome checked = check_mesh(
             fmt::format("{} --max-triangles {}", file("m.ply"), 4 * segments * segments));
         EXPECT_EQ(checked.status, 0) << checked.output;

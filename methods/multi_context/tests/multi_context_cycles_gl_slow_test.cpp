@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "gl/alive_objects.h"
+#include "gl/host/alive_objects.h"
 #include "support/method_fixture.h"
 
 namespace lodbench::test {

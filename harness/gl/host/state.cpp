@@ -1,4 +1,4 @@
-#include "gl/state.h"
+#include "gl/host/state.h"
 
 #include <GL/glcorearb.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "gl/timestamp_ring.h"
+#include "gl/host/timestamp_ring.h"
 
 #include <fmt/format.h>
 

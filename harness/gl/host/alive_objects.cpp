@@ -1,4 +1,4 @@
-#include "gl/alive_objects.h"
+#include "gl/host/alive_objects.h"
 
 #include <fmt/format.h>
 
