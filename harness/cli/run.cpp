@@ -27,7 +27,7 @@ void print_outcome(const run::CampaignOutcome& outcome, bool json) {
         return;
     }
     base::print("\n{}\n", report::text_table(report::table_rows(outcome.cells, outcome.seed)));
-    base::print("results   {}\npictures  {}\n", outcome.out.string(),
+    base::print("{}results   {}\npictures  {}\n", warnings_line(outcome), outcome.out.string(),
                 (outcome.out / "shots").string());
 }
 
