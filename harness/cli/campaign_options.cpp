@@ -194,9 +194,16 @@ std::string minutes_text(double seconds) {
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-std::string results_lines(const std::filesystem::path& out) {
-    return fmt::format("results   {}\nreport    lodbench report {}\n", out.string(),
-                       shell_word(out.string()));
+std::string warnings_line(const run::CampaignOutcome& outcome) {
+    if (outcome.warnings.empty()) return {};
+    return fmt::format("warnings  {}, in {}\n", outcome.warnings.size(),
+                       (outcome.out / "summary.md").string());
+}
+
+std::string results_lines(const run::CampaignOutcome& outcome) {
+    const std::string out = outcome.out.string();
+    return warnings_line(outcome) +
+           fmt::format("results   {}\nreport    lodbench report {}\n", out, shell_word(out));
 }
 
 Json::Value to_json(const run::CampaignOutcome& outcome) {

@@ -78,8 +78,12 @@ private:
 /// "1:05", rounded up to whole seconds.
 [[nodiscard]] std::string minutes_text(double seconds);
 
-/// The last lines of a comparison: where its results are, and the command that draws them.
-[[nodiscard]] std::string results_lines(const std::filesystem::path& out);
+/// That there were warnings, which may have scrolled away, and where they stand; "" for none.
+[[nodiscard]] std::string warnings_line(const run::CampaignOutcome& outcome);
+
+/// The last lines of a comparison: warnings, where its results are, and the command that draws
+/// them.
+[[nodiscard]] std::string results_lines(const run::CampaignOutcome& outcome);
 
 /// An outcome as --json prints it.
 [[nodiscard]] Json::Value to_json(const run::CampaignOutcome& outcome);

@@ -184,7 +184,7 @@ int match(Options& options) {
         object["trade"] = report::to_json(rows);
         base::print("{}\n", results::to_text(object));
     } else {
-        base::print("\n{}\n{}", text, results_lines(outcome.campaign.out));
+        base::print("\n{}\n{}", text, results_lines(outcome.campaign));
     }
     if (!outcome.campaign.error.empty()) {
         base::tell("lodbench: {}", outcome.campaign.error);

@@ -47,7 +47,7 @@ void print_outcome(const run::CampaignOutcome& outcome, bool json) {
         return;
     }
     base::print("\n{}\n", tables(outcome));
-    base::print("results   {}\npictures  {}\n", outcome.out.string(),
+    base::print("{}results   {}\npictures  {}\n", warnings_line(outcome), outcome.out.string(),
                 (outcome.out / "shots").string());
 }
 

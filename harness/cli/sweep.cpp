@@ -115,7 +115,7 @@ int sweep(Options& options) {
         object["trade"] = report::to_json(rows);
         base::print("{}\n", results::to_text(object));
     } else {
-        base::print("\n{}\n{}", text, results_lines(outcome.out));
+        base::print("\n{}\n{}", text, results_lines(outcome));
     }
     if (!outcome.error.empty()) base::tell("lodbench: {}", outcome.error);
     return outcome.exit_status();

@@ -138,11 +138,13 @@ struct Holder {
     }
 };
 
-std::string words_of_conflict(const std::string& id, const Holder& first, const Holder& other) {
+/// `decided`: the first is used.
+std::string words_of_conflict(const std::string& id, const Holder& first, const Holder& other,
+                              bool decided) {
     const std::string held = fmt::format("method '{}' is held by two plugins: ", id);
     const std::string first_path = first.listing->path.string();
     const std::string other_path = other.listing->path.string();
-    if (!first.goes_before(other)) {
+    if (!decided) {
         return held + fmt::format(
                           "neither {} nor {} is used, for nothing tells which is meant; "
                           "remove one, or give its method another id",
@@ -173,13 +175,14 @@ void settle_duplicates(std::vector<PluginListing>& listings,
     for (auto& [id, held] : holders) {
         if (held.size() < 2) continue;
         std::ranges::stable_sort(held, &Holder::goes_before);
+        const bool decided = held[0].goes_before(held[1]);
         for (std::size_t i = 1; i < held.size(); ++i) {
             PluginListing& loser = *held[i].listing;
-            loser.left_out.push_back(words_of_conflict(id, held[0], held[i]));
+            loser.left_out.push_back(words_of_conflict(id, held[0], held[i], decided));
             loader_log("{}", loser.left_out.back());
             leave_out(loser, id);
         }
-        if (!held[0].goes_before(held[1])) leave_out(*held[0].listing, id);
+        if (!decided) leave_out(*held[0].listing, id);
     }
 }
 

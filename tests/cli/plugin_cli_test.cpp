@@ -34,6 +34,8 @@ protected:
     /// Said in the terminal, and beside the figures.
     void expect_warned(const std::string& terminal, const std::string& words) const {
         EXPECT_THAT(terminal, HasSubstr("warning: " + words));
+        EXPECT_THAT(terminal, testing::ContainsRegex("\nwarnings  [0-9]+, in " + out().string() +
+                                                     "/summary.md\nresults   "));
         EXPECT_THAT(text_of(out() / "summary.md"), HasSubstr(report::markdown_text(words)));
         const Json::Value run = run_json();
         const Json::Value& warnings = run["warnings"];

@@ -104,6 +104,20 @@ TEST(PluginLibrary, of_two_unknown_plugins_with_one_id_in_one_folder_neither_is_
     }
 }
 
+TEST(PluginLibrary, nor_is_a_third_of_a_later_folder_for_it_was_not_meant_either) {
+    const Copies copies{"mine", "yours"};
+    const auto listings =
+        list_plugins({copies.path("mine").parent_path(), broken("duplicate").parent_path()});
+    ASSERT_EQ(listings.size(), 3U);
+    for (const PluginListing& listing : listings) EXPECT_TRUE(listing.methods.empty());
+    for (const std::size_t loser : {1U, 2U}) {
+        ASSERT_EQ(listings[loser].left_out.size(), 1U);
+        EXPECT_THAT(listings[loser].left_out[0],
+                    HasSubstr(fmt::format("neither {} nor {} is used", copies.path("mine").string(),
+                                          listings[loser].path.string())));
+    }
+}
+
 TEST(PluginLibrary, a_newcomer_to_a_folder_does_not_take_the_place_of_lodbench_s_own) {
     // By their names, the first of which goes before the others in their order.
     const Copies copies{"a_newcomer", "lindstrom", "persistent_grid"};
