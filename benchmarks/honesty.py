@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What lindstrom's claimed bound is worth, and what keeping it costs.
 
-Flies the path of trade/high.toml over Puget Sound with fields of view and tolerances from small to large, and
+Flies the path of trade/high.toml over Puget Sound with fields of view and tolerances from small to large,
 prints the greatest measured screen error over tau for each pair of the options that bound it:
 
   midpoint, euclidean          the paper, lambda by the tangent

@@ -54,8 +54,7 @@ std::string flight_checksum(const scenario::Scenario& scenario) {
 
 /// Whether the flight is that for which its knob values were found.
 bool flown_as_kept(const RunRequest& request) {
-    return request.kept_knobs && !request.overrides.frames && !request.overrides.viewport &&
-           request.settings.empty();
+    return !request.overrides.frames && !request.overrides.viewport && request.settings.empty();
 }
 
 Json::Value to_json(const scenario::EqualError& equal, bool as_kept) {
@@ -94,7 +93,9 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
         if (!scenario.path.recorded.empty()) {
             json["flight_checksum"] = flight_checksum(scenario);
         }
-        if (scenario.equal) json["equal"] = to_json(*scenario.equal, flown_as_kept(request));
+        if (scenario.equal && request.kept_knobs && scenario.measure.truth) {
+            json["equal"] = to_json(*scenario.equal, flown_as_kept(request));
+        }
         run["scenarios"].append(json);
     }
     run["plugins"] = listings_to_json(plugins);
