@@ -58,8 +58,7 @@ std::string checksum_of_file(const fs::path& file) {
 
 /// Whether the flight is that for which its knob values were found.
 bool flown_as_kept(const RunRequest& request) {
-    return request.kept_knobs && !request.overrides.frames && !request.overrides.viewport &&
-           request.settings.empty();
+    return !request.overrides.frames && !request.overrides.viewport && request.settings.empty();
 }
 
 Json::Value to_json(const scenario::EqualError& equal, bool as_kept) {
@@ -100,7 +99,9 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
             json["flight_file"] = fs::absolute(scenario.path.recorded).string();
             json["flight_checksum"] = checksum_of_file(scenario.path.recorded);
         }
-        if (scenario.equal) json["equal"] = to_json(*scenario.equal, flown_as_kept(request));
+        if (scenario.equal && request.kept_knobs && scenario.measure.truth) {
+            json["equal"] = to_json(*scenario.equal, flown_as_kept(request));
+        }
         run["scenarios"].append(json);
     }
     run["plugins"] = listings_to_json(plugins);

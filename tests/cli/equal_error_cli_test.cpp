@@ -77,6 +77,20 @@ TEST_F(EqualError, run_prints_the_comparison_and_summary_md_holds_it_with_the_wh
                 HasSubstr("## small: every method set to"));
 }
 
+TEST_F(EqualError, errors_that_are_not_measured_or_not_those_kept_are_not_compared) {
+    const Finished finished =
+        lodbench("run", {"--method", "lindstrom", "--no-truth", "--out", out()});
+    EXPECT_EQ(finished.status, 0) << finished.output;
+    EXPECT_THAT(finished.output, AllOf(HasSubstr("fps (range)"), Not(HasSubstr("## small"))));
+    for (const char* command : {"match", "sweep"}) {
+        Arguments arguments = {"--method", "lindstrom", "--out", out(command)};
+        if (std::string(command) == "match") arguments.insert(arguments.end(), {"--error", "8px"});
+        ASSERT_EQ(lodbench(command, arguments).status, 0) << command;
+        EXPECT_THAT(text_of(fs::path(out(command)) / "summary.md"), Not(HasSubstr("## small")))
+            << command;
+    }
+}
+
 TEST_F(EqualError, match_begins_at_the_kept_value_and_sweep_at_the_default) {
     const auto probes = [&](const std::string& name) {
         EXPECT_EQ(lodbench("match", {"--error", "2px", "--method", "lindstrom", "--out", out(name)})

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What lindstrom's claimed bound is worth, and what keeping it costs.
 
-Flies the path of trade/high.toml over Puget Sound with fields of view and tolerances from small to large, and
-prints the greatest measured screen error over tau for each pair of the options that bound it:
+Flies the path of trade/high.toml over Puget Sound with fields of view and tolerances from small to large,
+and prints the greatest measured screen error over tau for each pair of the options that bound it:
 
   midpoint, euclidean          the paper, lambda by the tangent
   accumulated, euclidean       without the sum of midpoint errors: what is left over 1 is the off-axis angle
