@@ -25,7 +25,7 @@ import source_copy  # noqa: E402
 # Quick ones first: most mutants die before the second, whose tests draw whole frames.
 TESTS = ["measure_test", "measure_gl_test"]
 
-# In the copy no test waits for the program and the plugins: those above load neither.
+# In the copy no test waits for the program and the plugins: those above load neither; what does is in tests/run.
 TRIM = ("cmake/LodbenchTests.cmake", "    add_dependencies(${program} lodbench_under_test)\n", "")
 
 BUILD_LIMIT = 3600  # seconds; what does not end is a mistake

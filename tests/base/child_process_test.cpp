@@ -87,7 +87,7 @@ TEST(ChildProcess, takes_a_daemon_with_it_and_tells_of_it) {
     EXPECT_TRUE(child.ending().well());
     EXPECT_TRUE(is_gone(daemon.await()));
     EXPECT_THAT(child.left_behind(),
-                testing::StartsWith("left 1 process behind, which was ended: child_process"));
+                testing::StartsWith("left 1 process behind, which was ended: base_test"));
 }
 
 TEST(ChildProcess, ends_with_all_that_it_started) {

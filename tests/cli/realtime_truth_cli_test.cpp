@@ -5,49 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "measure/pixel_errors.h"
-#include "support/frames_csv.h"
-#include "support/run_lodbench.h"
+#include "support/realtime_truth.h"
 
 namespace lodbench::test {
 namespace {
-
-using Arguments = std::vector<std::string>;
-
-class RealtimeTruth : public testing::Test {
-protected:
-    /// 12 frames 40 m apart, over a terrain from above: a frame behind is raised by 4 m of the
-    /// 500 m or so that it is away.
-    fs::path run(const std::string& name, const Arguments& more) {
-        const fs::path file = folder_.path() / "small.toml";
-        std::ofstream(file) << "name = \"small\"\n[terrain]\nsynthetic = \"ridged\"\nrows = 65\n"
-                               "columns = 65\nspacing = 10\nshape.height = 100\n"
-                               "[viewport]\nwidth = 64\nheight = 48\n"
-                               "[flight]\nkind = \"line\"\nframes = 12\nwarmup_frames = 1\n"
-                               "start = [100, 320, 500]\nend = [540, 320, 500]\nheading = 90\n"
-                               "pitch = -70\n[measure]\nevery = 2\nshots = [0]\n"
-                               "[run]\nrepetitions = 1\n";
-        const fs::path out = folder_.path() / name;
-        Arguments arguments = {"run",        file.string(),  "--out",
-                               out.string(), "--plugin-dir", broken_plugin_folder("lags")};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const Finished finished = run_lodbench(arguments, folder_.path());
-        EXPECT_EQ(finished.status, 0) << finished.output;
-        return out;
-    }
-    static std::vector<FrameTexts> frames_of(const fs::path& out, const Json::Value& cell) {
-        return read_frames_csv(out / "frames" / (cell["cell"].asString() + ".csv"));
-    }
-    static std::vector<std::string> texts(const std::vector<FrameTexts>& frames,
-                                          std::span<const char* const> columns) {
-        std::vector<std::string> all;
-        for (const FrameTexts& frame : frames) {
-            for (const char* column : columns) all.push_back(frame.at(column));
-        }
-        return all;
-    }
-
-    ScratchFolder folder_;
-};
 
 // Each surface takes longer than the frames do here, so that none of them is ready in time.
 const Arguments kLags = {"--method", "lags", "--set", "lags.work_ms=50"};
@@ -80,21 +41,6 @@ TEST_F(RealtimeTruth, is_above_the_lockstep_error_where_the_method_lags_and_null
         // covers some more pixels or some fewer.
         EXPECT_NEAR(realtime["count"].asDouble(), lockstep["count"].asDouble(),
                     0.2 * lockstep["count"].asDouble());
-    }
-}
-
-// Flown in real time like any setting of the method: waiting for its errors in `select`, it draws
-// there what it draws in lockstep.
-TEST_F(RealtimeTruth, is_the_lockstep_error_where_a_setting_waits) {
-    const fs::path out =
-        run("out", {"--method", "multi-context", "--set", "multi-context.async=false", "--set",
-                    "multi-context.k=17", "--set", "multi-context.delta=1.8"});
-    const Json::Value cell = cells_of(out).at(0);
-    EXPECT_GT(cell["pixel_error_px"]["max"].asDouble(), 0.1) << "too good to judge by";
-    // Means are summed in another order.
-    for (const char* figure : {"count", "max", "p999", "p99"}) {
-        EXPECT_EQ(cell["pixel_error_realtime_px"][figure], cell["pixel_error_px"][figure])
-            << figure;
     }
 }
 
