@@ -142,7 +142,7 @@ protected:
             3 * std::size_t(camera.viewport.width) * std::size_t(camera.viewport.height), 128);
         meter.take(0, camera, captured(mesh, camera), nullptr);
         (void)meter.measure(depth_of(rasterised == nullptr ? mesh : *rasterised, terrain, camera),
-                            grey, measure::test::view_of(meter.terrain(), camera, grey));
+                            grey, lodbench::test::view_of(meter.terrain(), camera, grey));
         return meter.summary();
     }
 

@@ -149,7 +149,7 @@ TEST_F(FaultTable, popping_is_what_moved_between_two_frames_and_never_the_camera
         FrameTruth row;
         meter.take(7, first, captured(before, first), nullptr);
         row = meter.measure(depth_of(before, *terrain, first), grey,
-                            test::view_of(meter.terrain(), first, grey));
+                            lodbench::test::view_of(meter.terrain(), first, grey));
         meter.take(8, second, captured(after, second), &row);
         const TruthSummary summary = meter.summary();
         EXPECT_EQ(row.popping_max_px, summary.popping->max);

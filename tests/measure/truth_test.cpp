@@ -76,7 +76,7 @@ FrameTruth show(TruthMeter& meter, int frame, double height, FrameTruth* before 
     const Camera camera = from_west();
     meter.take(frame, camera, plane(camera, height), before);
     return meter.measure(depth_of(camera, height), picture(level),
-                         test::view_of(meter.terrain(), camera, picture(100)));
+                         lodbench::test::view_of(meter.terrain(), camera, picture(100)));
 }
 
 TEST(TruthMeter, keeps_the_frame_that_looked_worst_and_where_it_was_worst) {
@@ -113,8 +113,9 @@ TEST(TruthMeter, popping_is_seen_by_the_later_camera_and_only_from_one_frame_to_
     const Camera nearer = from_west(50);
     meter.take(1, nearer, plane(nearer, 2), &first);
     EXPECT_NEAR(*first.popping_max_px, 2 * nearer.lambda() / 50, kFloat);
-    FrameTruth second = meter.measure(depth_of(nearer, 2), picture(100),
-                                      test::view_of(meter.terrain(), nearer, picture(100)));
+    FrameTruth second =
+        meter.measure(depth_of(nearer, 2), picture(100),
+                      lodbench::test::view_of(meter.terrain(), nearer, picture(100)));
     const std::uint64_t counted = meter.summary().popping->count;
     EXPECT_GT(counted, 100U);
     // Frame 2 was not measured: 3 does not follow 1, and had it popped nobody would have seen it.
@@ -149,8 +150,8 @@ TEST(TruthMeter, a_column_of_sky_is_a_crack_and_moves_its_own_silhouette_alone) 
     }
     ASSERT_GT(terrain_rows, 3U);
     meter.take(0, camera, plane(camera, 0), nullptr);
-    const FrameTruth truth =
-        meter.measure(depth, picture(100), test::view_of(meter.terrain(), camera, picture(100)));
+    const FrameTruth truth = meter.measure(
+        depth, picture(100), lodbench::test::view_of(meter.terrain(), camera, picture(100)));
     EXPECT_EQ(truth.silhouette_pixels, terrain_rows);
     EXPECT_EQ(truth.crack_pixels, terrain_rows);
     const double offset = kHeight - first_row;
@@ -189,7 +190,7 @@ TEST(TruthMeter, a_depth_off_the_surface_is_looked_for_on_it_at_slivers_only) {
         meter.take(0, camera, std::move(surface), nullptr);
         return *meter
                     .measure(depth, picture(100),
-                             test::view_of(meter.terrain(), camera, picture(100)))
+                             lodbench::test::view_of(meter.terrain(), camera, picture(100)))
                     .pixel_max_px;
     };
     const auto offset = [&](double too_deep) {
@@ -211,7 +212,8 @@ TEST(TruthMeter, the_worst_pixel_is_named_by_its_row_and_column) {
     ASSERT_GT(depth[pixel(27, 40)], 0);
     depth[pixel(27, 40)] *= 2;  // at half its depth: over the ground, where nothing was drawn
     meter.take(5, camera, plane(camera, 0), nullptr);
-    (void)meter.measure(depth, picture(100), test::view_of(meter.terrain(), camera, picture(100)));
+    (void)meter.measure(depth, picture(100),
+                        lodbench::test::view_of(meter.terrain(), camera, picture(100)));
     const TruthSummary measured = meter.summary();
     EXPECT_EQ(measured.pixel_worst->frame, 5);
     EXPECT_EQ(measured.pixel_worst->row, 27);

@@ -6,12 +6,12 @@
 
 #include "measure/reference_view.h"
 
-namespace lodbench::measure::test {
+namespace lodbench::test {
 
-inline ReferenceView view_of(const ReferenceTerrain& terrain, const Camera& camera,
-                             std::vector<std::uint8_t> picture) {
-    return {seen_samples(terrain, camera, {terrain, camera}), reference_hits(terrain, camera),
-            std::move(picture)};
+inline measure::ReferenceView view_of(const measure::ReferenceTerrain& terrain,
+                                      const Camera& camera, std::vector<std::uint8_t> picture) {
+    return {measure::seen_samples(terrain, camera, {terrain, camera}),
+            measure::reference_hits(terrain, camera), std::move(picture)};
 }
 
-}  // namespace lodbench::measure::test
+}  // namespace lodbench::test
