@@ -39,7 +39,7 @@ measure::FrameTruth truth_of(const measure::CapturedSurface& surface,
     measure::TruthMeter meter(terrain->samples(), terrain->info(), std::nullopt);
     meter.take(0, kCamera, measure::CapturedSurface(surface), nullptr);
     const std::vector<std::uint8_t> grey(3 * depth.size(), 128);
-    return meter.measure(depth, grey, lodbench::test::view_of(meter.terrain(), camera, grey));
+    return meter.measure(depth, grey, view_of(meter.terrain(), kCamera, grey));
 }
 
 void expect_surface_exact(const measure::FrameTruth& truth) {
