@@ -35,15 +35,16 @@ FileDescriptor open_file(const fs::path& path, int flags) {
 }
 
 /// 0, or the error number.
-int write_and_sync(int number, std::string_view text) {
+int write_and_sync(int number, std::string_view text, Keep keep = Keep::safely) {
     if (!write_all(number, text)) return errno;
+    if (keep == Keep::for_now) return 0;
     // EINVAL: what is no regular file (a pipe, /dev/full) cannot be synced.
     return fsync(number) == 0 || errno == EINVAL ? 0 : errno;
 }
 
 }  // namespace
 
-void write_whole(const fs::path& path, std::string_view text) {
+void write_whole(const fs::path& path, std::string_view text, Keep keep) {
     // Renaming over a device or a pipe would take it from everyone.
     std::error_code ignored;
     if (const fs::file_status status = fs::status(path, ignored);
@@ -62,7 +63,7 @@ void write_whole(const fs::path& path, std::string_view text) {
     {
         FileDescriptor file = open_file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
         if (!file) fail("write", path, errno);
-        error = write_and_sync(file.number(), text);
+        error = write_and_sync(file.number(), text, keep);
         if (!file.close() && error == 0) error = errno;  // some file systems refuse only here
     }
     if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;

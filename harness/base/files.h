@@ -15,10 +15,14 @@ struct DiskFullError : EnvironmentError {
     using EnvironmentError::EnvironmentError;
 };
 
-/// Writes `text` to a temporary file in the same folder, syncs it and renames it over `path`.
-/// Throws EnvironmentError naming the file and the system's words, DiskFullError where there is no
-/// room; `path` is then as it was.
-void write_whole(const std::filesystem::path& path, std::string_view text);
+/// Whether a file survives a machine that stops.
+enum class Keep { safely, for_now };
+
+/// Writes `text` to a temporary file in the same folder, syncs it (not `for_now`) and renames it
+/// over `path`. Throws EnvironmentError naming the file and the system's words, DiskFullError where
+/// there is no room; `path` is then as it was.
+void write_whole(const std::filesystem::path& path, std::string_view text,
+                 Keep keep = Keep::safely);
 
 /// Appends one line (without its newline) to a JSON-lines file with a single write, synced; on
 /// failure the file is truncated back to what it was and EnvironmentError or DiskFullError thrown.

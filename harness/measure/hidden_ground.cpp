@@ -6,6 +6,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <span>
@@ -265,11 +266,12 @@ private:
     std::vector<int> row_;
 };
 
-bool HiddenGround::near_plane_is_clear(const ReferenceTerrain& terrain,
-                                       const Camera& camera) const {
+bool HiddenGround::looks_from_above(const ReferenceTerrain& terrain, const Camera& camera) const {
     const glm::dvec2 tangents = camera.half_tangents();
     const double radius = 1.01 * camera.near_plane * std::sqrt(1 + glm::dot(tangents, tangents));
     const glm::dvec2 position(camera.position);
+    const TerrainInfo& info = terrain.info();
+    if (glm::clamp(position, info.extent_min(), info.extent_max()) != position) return false;
     return camera.position.z - radius > terrain.interval_within(position, 1.5 * radius).high;
 }
 
@@ -280,7 +282,7 @@ HiddenGround::HiddenGround(const ReferenceTerrain& terrain, const Camera& camera
     const TerrainInfo& info = terrain.info();
     const std::size_t block_count =
         std::size_t(block_columns_) * std::size_t((info.rows - 2) / kBlockCells + 1);
-    const bool with_blocks = near_plane_is_clear(terrain, camera);
+    const bool with_blocks = looks_from_above(terrain, camera);
     blocks_in_sight_.resize(block_count, with_blocks ? 0 : 1);
     constexpr double kFarthest = 0x1p30;  // cells: beyond, coordinates in the grid are too rough
     const glm::dvec2 cells = (glm::dvec2(camera.position) - info.origin) / info.spacing;

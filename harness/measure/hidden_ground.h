@@ -36,8 +36,8 @@ public:
     /// Whether no part of the block with the cells from (kBlockCells * row, kBlockCells * column)
     /// on can reach a pixel: it lies out of view or a pixel's width below the horizon, so that no
     /// rasteriser's rounding shows it either. False everywhere for a camera whose near plane is in
-    /// the ground: its picture shows the surface from below, where nothing is hidden by what stands
-    /// on top.
+    /// the ground, or which is beside the extent: it may look at the surface from below, and then
+    /// nothing is hidden by what stands on top.
     [[nodiscard]] bool block(int row, int column) const {
         return blocks_in_sight_[std::size_t(row) * std::size_t(block_columns_) +
                                 std::size_t(column)] == 0;
@@ -46,8 +46,8 @@ public:
 private:
     struct Quadrant;
     class Sweep;
-    [[nodiscard]] bool near_plane_is_clear(const ReferenceTerrain& terrain,
-                                           const Camera& camera) const;
+    [[nodiscard]] bool looks_from_above(const ReferenceTerrain& terrain,
+                                        const Camera& camera) const;
 
     int columns_;
     int block_columns_;

@@ -181,7 +181,7 @@ void ViewCache::keep(int frame, const Camera& camera, const measure::ReferenceVi
     const std::string text = encoded(key_of(camera), view);
     if (size_of_files(folder_) + text.size() > kMostBytes) return;
     try {
-        base::write_whole(file_of(frame), text);
+        base::write_whole(file_of(frame), text, base::Keep::for_now);
     } catch (const EnvironmentError&) {  // a convenience: the disk is the results'
     }
 }

@@ -112,6 +112,10 @@ TEST(HiddenGround, a_wall_hides_the_blocks_behind_it) {
     const HiddenGround under(terrain, camera);
     EXPECT_FALSE(under.block(32, 60));
     EXPECT_TRUE(under.sample(128, 240));
+    camera.position = wall.point(-10, 128, 50);  // and looks under the border's edge
+    const HiddenGround outside(terrain, camera);
+    EXPECT_FALSE(outside.block(32, 60));
+    EXPECT_TRUE(outside.sample(128, 240));
 }
 
 }  // namespace
