@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <tuple>
 
@@ -58,15 +59,17 @@ EqualRow row_of(const results::CellGroup& group, const EqualFlight& flight,
     return row;
 }
 
-std::string table_of(const std::vector<EqualRow>& rows) {
+std::string table_of(const EqualFlight& flight, const std::vector<EqualRow>& rows) {
+    const std::string off = fmt::format(" (not {})", px(flight.error_px));
     std::vector<std::vector<std::string>> lines = {
         {"method", "set to", "frame ms", "slowest ms", "triangles", "P99.9 px", "claims px"}};
     for (const EqualRow& row : rows) {
         lines.push_back(
             {row.group->label, row.knob.value_or("-"), text_of(row.frame_ms, "{:.1f}"),
              text_of(row.slowest_ms, "{:.1f}"), text_of(row.triangles, "{:.0f}"),
-             text_of(row.error, "{:.2f}") + (row.place == EqualRow::Place::off ? " (off)" : ""),
-             text_of(row.claimed, "{:.3g}") + (row.breaks_claim() ? " (!)" : "")});
+             text_of(row.error, "{:.2f}") + (row.place == EqualRow::Place::off ? off : ""),
+             text_of(row.claimed, "{:.3g}") +
+                 (row.breaks_claim() ? fmt::format(" (exceeded {:.2f} x)", *row.honesty) : "")});
     }
     return aligned_table(lines);
 }
@@ -90,25 +93,45 @@ std::string verdict(const EqualFlight& flight, const std::vector<EqualRow>& rows
             "times do not compare.",
             promise);
     }
-    std::vector<std::string> winners;
-    std::string others;
-    for (const EqualRow* row : equal) {
-        if (*row->frame_ms <= *equal.front()->frame_ms * (1 + kTie)) {
-            winners.push_back(row->group->label);
-        } else if (others.empty()) {
-            others =
-                fmt::format("; the next, {}, takes {:.1f} ms", row->group->label, *row->frame_ms);
+    // Those that one flight cannot tell from the first of `from` on.
+    const auto tied = [&](std::size_t from) {
+        std::vector<const EqualRow*> alike;
+        for (std::size_t i = from; i < equal.size(); ++i) {
+            if (*equal[i]->frame_ms <= *equal[from]->frame_ms * (1 + kTie)) {
+                alike.push_back(equal[i]);
+            }
         }
+        return alike;
+    };
+    const auto labels = [](const std::vector<const EqualRow*>& alike) {
+        std::vector<std::string> words;
+        for (const EqualRow* row : alike) words.push_back(row->group->label);
+        return list_of(words);
+    };
+    const std::vector<const EqualRow*> winners = tied(0);
+    const std::vector<const EqualRow*> next = tied(winners.size());
+    std::string others;
+    if (next.size() == 1) {
+        others =
+            fmt::format("; the next, {}, takes {:.1f} ms", labels(next), *next.front()->frame_ms);
+    } else if (!next.empty()) {
+        others = fmt::format("; the next, {}, take {:.1f} to {:.1f} ms", labels(next),
+                             *next.front()->frame_ms, *next.back()->frame_ms);
     }
     std::string text = fmt::format(
-        "At equal error ({}) {} {} fastest: {:.1f} ms a frame (median){}", promise,
-        list_of(winners), winners.size() == 1 ? "is" : "are", *equal.front()->frame_ms, others);
+        "At equal error ({}) {} {} fastest: {:.1f} ms a frame (median){}", promise, labels(winners),
+        winners.size() == 1 ? "is" : "are", *equal.front()->frame_ms, others);
     for (const EqualRow& row : rows) {
         if (row.place != EqualRow::Place::exact || !row.frame_ms) continue;
         text += fmt::format("; {}, which draws every sample, {:.1f} ms", row.group->label,
                             *row.frame_ms);
     }
-    return text + ".";
+    std::vector<const EqualRow*> broken;
+    std::ranges::copy_if(winners, std::back_inserter(broken), &EqualRow::breaks_claim);
+    if (broken.empty()) return text + ".";
+    return fmt::format("{}. In places {} {} more error than {}.", text, labels(broken),
+                       broken.size() == 1 ? "shows" : "show",
+                       broken.size() == 1 ? "it claims" : "they claim");
 }
 
 /// Why each row that is off is so; those of one reason in one line.
@@ -121,12 +144,12 @@ std::vector<std::string> off_lines(const EqualFlight& flight, const std::vector<
                                               row.error ? px(*row.error) : "no measured error");
         const auto reason = flight.off.find(row.group->method);
         if (!row.knob) {
-            lines.push_back(fmt::format("{} (off): it has no knob to set.", shown));
+            lines.push_back(fmt::format("{}: it has no knob to set.", shown));
         } else if (flight.as_kept && reason != flight.off.end()) {
-            lines.push_back(fmt::format("{} (off): {}.", shown, reason->second));
+            lines.push_back(fmt::format("{}: {}.", shown, reason->second));
         } else if (row.error && row.settled && flight.meets(*row.settled)) {
             lines.push_back(
-                fmt::format("{} (off): at this machine's pace its selection comes late; caught up, "
+                fmt::format("{}: at this machine's pace its selection comes late; caught up, "
                             "it shows {}.",
                             shown, px(*row.settled)));
         } else {
@@ -135,7 +158,7 @@ std::vector<std::string> off_lines(const EqualFlight& flight, const std::vector<
     }
     if (unexplained.empty()) return lines;
     lines.push_back(fmt::format(
-        "{} (off): {}.", list_of(unexplained),
+        "{}: {}.", list_of(unexplained),
         flight.as_kept
             ? "the kept value of the knob gives another error here, and `lodbench match` "
               "finds it anew"
@@ -151,10 +174,9 @@ std::vector<std::string> claim_lines(const std::vector<EqualRow>& rows) {
         broken.push_back(fmt::format("{} {:.2f} times", row.group->label, *row.honesty));
     }
     if (broken.empty()) return {};
-    return {
-        fmt::format("(!) somewhere the measured error is above the bound that the method "
-                    "claims: {}.",
-                    list_of(broken))};
+    return {fmt::format(
+        "The greatest measured screen error exceeds the bound that the method claims: {}.",
+        list_of(broken))};
 }
 
 }  // namespace
@@ -234,9 +256,9 @@ std::string equal_text(const EqualFlight& flight, const std::vector<Json::Value>
     const std::vector<EqualRow> rows = equal_rows(flight, groups, knobs);
     const std::vector<std::string> words = equal_words(flight, rows);
     std::string text = fmt::format(
-        "## {}: every method set to the same measured error, P99.9 = {} within {:.3g} "
+        "## {}: what methods cost at the same measured error, P99.9 = {} within {:.3g} "
         "%\n\n{}\n{}\n",
-        flight.scenario, px(flight.error_px), 100 * flight.tolerance, table_of(rows),
+        flight.scenario, px(flight.error_px), 100 * flight.tolerance, table_of(flight, rows),
         words.front());
     for (std::size_t i = 1; i < words.size(); ++i) text += "- " + words[i] + "\n";
     return text;
