@@ -27,7 +27,7 @@ struct MethodRequest {
 struct MeasureOptions {
     int every = 10;            ///< measure every n-th frame of the lockstep replay; >= 1
     bool truth = true;         ///< measure what those frames really show: errors, cracks, popping
-    bool pixels_only = false;  ///< of the truth what the pixels say: about a third of the time
+    bool pixels_only = false;  ///< of the truth what the pixels say, not what all samples do
     std::vector<int>
         shots;  ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
     std::vector<int> economy;  ///< frames compared with a near-minimal triangulation
