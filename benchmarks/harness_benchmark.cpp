@@ -1,5 +1,5 @@
 // What the harness itself adds to a frame: a method that does nothing, and one that draws, flown in
-// turns over the embedded scenario; its share is that of the latter's frame.
+// turns on scenarios/trade/high.toml; its share is that of the latter's frame.
 
 #include <fmt/format.h>
 

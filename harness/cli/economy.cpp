@@ -80,6 +80,7 @@ int economy(Options& options) {
     run::RunRequest& request = options.request;
     request.overrides.economy = options.frames;
     request.overrides.truth = true;
+    request.overrides.pixels_only = false;
     if (!request.overrides.repetitions) request.overrides.repetitions = 1;
     options.finish();
     Progress progress;

@@ -62,7 +62,7 @@ std::string number_text(const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : "-";
 }
 
-/// ", at most 1:23 of searching left"; nothing where none can be left.
+/// ", at most 1:23 of searching left"; nothing before a probe was flown.
 std::string most_left(const run::SearchPlace& place) {
     if (!place.most_left_s) return {};
     return fmt::format(", at most {} of searching left", minutes_text(*place.most_left_s));

@@ -140,10 +140,12 @@ private:
         const double inverse = 1 / distance;
         const double margin = q_.tolerance / q_.nearest;
         for (int across = from; across <= to; ++across) {
-            const double slope = (across - q_.eye_across) * inverse;
-            // A diagonal belongs to one quadrant alone: rows'.
-            if (!(q_.columns ? std::abs(slope) < 1 : std::abs(slope) <= 1)) continue;
-            const int sector = std::min(int((slope + 1) * half), q_.sectors - 1);
+            const double offset = across - q_.eye_across;
+            // A diagonal belongs to one quadrant alone: rows'. Compared before any rounding, so
+            // that no sample is in two, whose tasks would write it at once.
+            if (!(q_.columns ? std::abs(offset) < distance : std::abs(offset) <= distance))
+                continue;
+            const int sector = std::min(int((offset * inverse + 1) * half), q_.sectors - 1);
             if (sector < first_ || sector >= end_) continue;
             const std::size_t index = q_.index(line, across);
             const double rise = (double(q_.heights[index]) - q_.eye_z) * inverse;

@@ -162,11 +162,11 @@ public:
                 }
             });
             write_summary();
-            folder_.drop_views();
         } catch (const EnvironmentError& error) {
             if (nothing_is_kept()) throw;
             outcome_.error = error.what();
         }
+        folder_.drop_views();  // also where the disk is full: the room is the results'
         outcome_.run = run_;
         return std::move(outcome_);
     }
@@ -416,14 +416,16 @@ private:
         if (std::exchange(noise_is_noted_, true)) return;
         Json::Value machine = machine_context();
         machine["load_average"] = results::number(request_.load_average);
+        bool is_new = false;
         for (const std::string& words : noise_of(machine)) {
             const Json::Value& told = run_["noise"];
             if (std::find(told.begin(), told.end(), words) == told.end()) {
                 run_["noise"].append(words);
+                is_new = true;
             }
             observer_.noisy(words);
         }
-        write_run();
+        if (is_new) write_run();
     }
 
     void write_run() {

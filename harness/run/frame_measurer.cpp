@@ -76,10 +76,10 @@ void FrameMeasurer::measure_realtime(int frame) {
     measure::CapturedSurface surface = capture();
     stage_->draw_picture();
     const Camera& camera = stage_->camera();
-    const auto kept = views_.find(frame, camera);
-    meter_->measure_realtime(frame, camera, std::move(surface),
-                             kept ? kept->hits : measure::reference_hits(meter_->terrain(), camera),
-                             stage_->read_depth());
+    auto kept = views_.find(frame, camera);
+    const std::vector<measure::ReferenceHit> hits =
+        kept ? std::move(kept->hits) : measure::reference_hits(meter_->terrain(), camera);
+    meter_->measure_realtime(frame, camera, std::move(surface), hits, stage_->read_depth());
 }
 
 void FrameMeasurer::finish(results::CellResult& result) const {

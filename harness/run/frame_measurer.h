@@ -18,7 +18,8 @@ namespace lodbench::run {
 class FrameMeasurer {
 public:
     /// `claimed`: the method's bound in pixels. `truth`: the whole terrain that the stage's is, to
-    /// measure against; without it triangles are counted only.
+    /// measure against; without it triangles are counted only. `views`: where what a frame shows of
+    /// the truth is looked for and kept.
     FrameMeasurer(Stage& stage, std::optional<double> claimed,
                   std::shared_ptr<const terrain::HeightField> truth, ViewCache views = {},
                   measure::Extent extent = measure::Extent::all);
@@ -45,12 +46,11 @@ public:
 
 private:
     [[nodiscard]] measure::CapturedSurface capture();
+    [[nodiscard]] measure::ReferenceView reference_view();  ///< of the frame that was taken last
 
     Stage* stage_;
     std::shared_ptr<const terrain::HeightField> truth_;  ///< outlives the stage
     std::optional<measure::TruthMeter> meter_;
-    [[nodiscard]] measure::ReferenceView reference_view();  ///< of the frame that was taken last
-
     ViewCache views_;
     int frame_ = 0;                    ///< that was taken last
     std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last

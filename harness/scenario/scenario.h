@@ -25,9 +25,9 @@ struct MethodRequest {
 };
 
 struct MeasureOptions {
-    int every = 10;     ///< measure every n-th frame of the lockstep replay; >= 1
-    bool truth = true;  ///< measure what those frames really show: errors, cracks, popping
-    bool pixels_only = false;  ///< of the truth what the pixels say: about a third of the time
+    int every = 10;            ///< measure every n-th frame of the lockstep replay; >= 1
+    bool truth = true;         ///< measure what those frames really show: errors, cracks, popping
+    bool pixels_only = false;  ///< of the truth what the pixels say, not what all samples do
     std::vector<int>
         shots;  ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
     std::vector<int> economy;  ///< frames compared with a near-minimal triangulation
@@ -43,7 +43,7 @@ struct EqualError {
         std::string off;            ///< why it shows another error: "" where it shows that of all
     };
     double error_px = 1;      ///< P99.9 of the pixel error
-    double tolerance = 0.05;  ///< ratio, in (0, 1)
+    double tolerance = 0.05;  ///< ratio, 1e-4 to 0.5
     std::vector<Knob> knobs;
 };
 

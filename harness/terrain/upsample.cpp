@@ -168,10 +168,6 @@ private:
     Line before_, here_, next_, after_;  ///< rows of the source around the interval
 };
 
-}  // namespace
-
-namespace {
-
 [[noreturn]] void refuse(const std::string& what) {
     throw InputError("upsampling: " + what);
 }

@@ -27,6 +27,7 @@ TEST(DiskFull, ends_with_a_clear_error_and_keeps_finished_cells) {
     EXPECT_EQ(finished.status, 3) << finished.output;
     EXPECT_THAT(finished.output, HasSubstr("cannot append to " + (out / "cells.jsonl").string() +
                                            ": File too large; make room there"));
+    EXPECT_FALSE(fs::exists(out / "views")) << "the room is the results'";
     const std::size_t kept = cells_of(out).size();
     EXPECT_GT(kept, 0U);
     EXPECT_LT(kept, 12U);

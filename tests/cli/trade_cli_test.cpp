@@ -373,6 +373,12 @@ TEST_F(Trade, what_needs_the_truth_measures_it_whatever_the_scenario_says) {
         const Json::Value cell = json(lodbench(command, arguments))["cells"][0];
         EXPECT_TRUE(cell["pixel_error_px"]["p999"].isNumeric()) << command;
     }
+    measure_ = "pixels_only = true\n";
+    const Json::Value cell =
+        json(lodbench("economy", {"--frame", "1", "--method", "lindstrom", "--json", "--out",
+                                  out("samples")}))["cells"][0];
+    EXPECT_EQ(cell["status"], "ok") << cell["reason"];
+    EXPECT_EQ(cell["economy"].size(), 1U);
 }
 
 TEST_F(Trade, out_of_core_no_error_is_matched_and_nothing_is_begun) {

@@ -2,7 +2,6 @@
 #include "run/view_cache.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -11,6 +10,7 @@
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "support/raster_files.h"
 
 namespace lodbench::run {
 namespace {
@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 class ViewCacheTest : public ::testing::Test {
 protected:
     ViewCacheTest() {
-        fs::create_directories(folder_);
         camera_.position = {1.5, -2, 300.25};
         camera_.viewport = {7, 3};
         base::SplitMix64 random(1);
@@ -33,7 +32,6 @@ protected:
         }
         for (int i = 0; i < 63; ++i) view_.picture.push_back(std::uint8_t(random.next()));
     }
-    ~ViewCacheTest() override { fs::remove_all(folder_); }
 
     [[nodiscard]] ViewCache cache(const std::string& terrain = "0123456789abcdef",
                                   const std::string& device = "llvmpipe") const {
@@ -51,7 +49,8 @@ protected:
                   0);
     }
 
-    fs::path folder_ = fs::temp_directory_path() / ("lodbench-views-" + std::to_string(getpid()));
+    const test::TemporaryFolder scratch_;
+    const fs::path& folder_ = scratch_.path();
     Camera camera_;
     measure::ReferenceView view_;
 };

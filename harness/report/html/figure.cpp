@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kTitleHeight = 22;
 constexpr double kLineHeight = 17;
-constexpr double kKeyWidth = 28;
 constexpr double kGap = 14;            // between entries of the legend
 constexpr double kCharacterWidth = 7;  // of 12 units' text, rather too much than too little
 

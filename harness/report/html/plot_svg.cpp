@@ -232,7 +232,6 @@ std::string to_svg(const Plot& plot) {
 }
 
 std::string key_svg(const Plot& plot, const Series& series, double x, double y) {
-    constexpr double kKeyWidth = 28;
     if (plot.kind == Plot::Kind::bars) {
         return fmt::format(
             "<g class=\"ink o{}\"><rect class=\"f\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" "

@@ -16,7 +16,8 @@ struct Drawing {
 /// The plot as it stands on the page without a script.
 [[nodiscard]] std::string to_svg(const Plot& plot);
 
-/// What a series looks like, from `x` on and around `y`: 28 wide.
+/// What a series looks like, from `x` on and around `y`.
+inline constexpr double kKeyWidth = 28;
 [[nodiscard]] std::string key_svg(const Plot& plot, const Series& series, double x, double y);
 
 }  // namespace lodbench::report::html
