@@ -21,6 +21,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Of the disk, for the results.
+constexpr std::uint64_t kLeftBytes = std::uint64_t{256} << 20U;
+
 /// Goes up when the layout below does, or what makes a view.
 constexpr std::uint64_t kLayout = 1;
 
@@ -179,6 +182,8 @@ void ViewCache::keep(int frame, const Camera& camera, const measure::ReferenceVi
     std::error_code ignored;
     if (fs::symlink_status(folder_, ignored).type() != fs::file_type::directory) return;
     const std::string text = encoded(key_of(camera), view);
+    const fs::space_info disk = fs::space(folder_, ignored);
+    if (ignored || disk.available < text.size() + kLeftBytes) return;
     if (size_of_files(folder_) + text.size() > kMostBytes) return;
     try {
         base::write_whole(file_of(frame), text, base::Keep::for_now);

@@ -26,7 +26,7 @@ public:
     /// What is kept of the scenario's frame; nothing where the file is damaged or of another
     /// camera.
     [[nodiscard]] std::optional<measure::ReferenceView> find(int frame, const Camera& camera) const;
-    /// Does nothing where there is no room.
+    /// Does nothing where there is no room: none of what the results may need is taken.
     void keep(int frame, const Camera& camera, const measure::ReferenceView& view) const;
 
 private:

@@ -44,12 +44,25 @@ TEST(Views, kept_for_the_next_method_change_no_figure_and_are_gone_at_the_end) {
     const ScratchFolder folder;
     const fs::path scenario = hills(folder.path());
     const fs::path together = folder.path() / "together";
-    const auto flown = [&](const std::string& steps, const fs::path& out) {
-        return run_lodbench({"run", scenario.string(), "--method", "template", "--set",
-                             "template.step=" + steps, "--out", out.string()},
-                            folder.path());
+    const auto arguments = [&](const std::string& steps, const fs::path& out) {
+        return std::vector<std::string>{"run",      scenario.string(), "--method",
+                                        "template", "--set",           "template.step=" + steps,
+                                        "--out",    out.string()};
     };
-    const Finished all = flown("1,2,8", together);
+    const auto flown = [&](const std::string& steps, const fs::path& out) {
+        return run_lodbench(arguments(steps, out), folder.path());
+    };
+    // While it runs, the frames that were measured lie there.
+    const pid_t child = start_lodbench(arguments("1,2,8", together), folder.path() / "log");
+    bool kept = false;
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        kept = kept || fs::exists(together / "views" / "hills__4.view");
+        usleep(2000);
+    }
+    const Finished all = {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+                          text_of(folder.path() / "log")};
+    EXPECT_TRUE(kept);
     ASSERT_EQ(all.status, 0) << all.output;
     EXPECT_FALSE(fs::exists(together / "views"));
     for (const char* step : {"1", "2", "8"}) {
