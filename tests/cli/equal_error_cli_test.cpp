@@ -58,10 +58,10 @@ TEST_F(EqualError, run_prints_the_comparison_and_summary_md_holds_it_with_the_wh
     const Finished finished =
         lodbench("run", {"--method", "lindstrom", "--method", "full-grid", "--out", out()});
     EXPECT_THAT(finished.output,
-                AllOf(HasSubstr("## small: every method set to the same measured error"),
+                AllOf(HasSubstr("## small: what methods cost at the same measured error"),
                       HasSubstr("| full-grid "), Not(HasSubstr("fps (range)"))));
     EXPECT_THAT(text_of(fs::path(out()) / "summary.md"),
-                AllOf(HasSubstr("## small: every method set to"), HasSubstr("fps (range)")));
+                AllOf(HasSubstr("## small: what methods cost at"), HasSubstr("fps (range)")));
     const fs::path page = fs::path(out()) / "report.html";
     ASSERT_EQ(
         run_lodbench({"report", out(), "-o", page.string(), "--csv", out("csv")}, folder_.path())
@@ -74,7 +74,7 @@ TEST_F(EqualError, run_prints_the_comparison_and_summary_md_holds_it_with_the_wh
     fs::remove(fs::path(out()) / "summary.md");
     EXPECT_EQ(run_lodbench({"run", "--resume", "--out", out()}, folder_.path()).status, 0);
     EXPECT_THAT(text_of(fs::path(out()) / "summary.md"),
-                HasSubstr("## small: every method set to"));
+                HasSubstr("## small: what methods cost at"));
 }
 
 TEST_F(EqualError, errors_that_are_not_measured_or_not_those_kept_are_not_compared) {
