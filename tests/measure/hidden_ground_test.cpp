@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "measure/pixel_projection.h"
+#include "measure/reference_view.h"
 #include "reference_oracle.h"
 
 namespace lodbench::measure {
@@ -23,12 +24,20 @@ void hold_against_sight(const Ground& ground, const Camera& camera, Found& found
     const ReferenceTerrain terrain = ground.terrain();
     const HiddenGround hidden(terrain, camera);
     const PixelProjection pixels(camera);
+    ReferenceView view;
+    view.seen = seen_samples(terrain, camera, hidden);
     for (int row = 0; row < ground.info.rows; ++row) {
         for (int column = 0; column < ground.info.columns; ++column) {
             const glm::dvec3 local = pixels.local(terrain.sample(row, column));
-            if (!pixels.in_view(local)) continue;
+            const std::size_t index =
+                std::size_t(row) * std::size_t(ground.info.columns) + std::size_t(column);
+            if (!pixels.in_view(local)) {
+                ASSERT_FALSE(view.sees(index)) << row << ", " << column;
+                continue;
+            }
             const bool seen =
                 terrain.sees(camera.position, camera.near_plane / local.z, row, column);
+            ASSERT_EQ(view.sees(index), seen) << row << ", " << column;
             ++(seen ? found.seen : found.unseen);
             if (!hidden.sample(row, column)) continue;
             ++found.hidden;
@@ -108,6 +117,13 @@ TEST(HiddenGround, a_wall_hides_the_blocks_behind_it) {
         }
     }
     EXPECT_TRUE(hidden.block(0, 10)) << "out of view";
+    // A peak behind it that rises above the line of sight over the wall, at 162 m there.
+    Ground peak = wall;
+    peak.heights[std::size_t(130) * 257 + 202] = 400;
+    const ReferenceTerrain peak_terrain = peak.terrain();
+    const HiddenGround behind(peak_terrain, camera);
+    EXPECT_FALSE(behind.block(32, 50));
+    EXPECT_TRUE(behind.block(32, 48));
     camera.position.z = 0.5;  // the near plane reaches into the ground
     const HiddenGround under(terrain, camera);
     EXPECT_FALSE(under.block(32, 60));
