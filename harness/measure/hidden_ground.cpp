@@ -109,16 +109,13 @@ public:
           row_(std::size_t(end - first) + 1) {}
 
     void run() {
-        if (with_blocks_) show_blocks(q_.eye_block_line);
+        int shown = q_.eye_block_line;
+        if (with_blocks_) show_blocks(shown);
         for (int line = q_.first_line; line >= 0 && line < q_.lines; line += q_.step) {
             const double distance = q_.distance(line);
-            if (with_blocks_) {
-                if (q_.step > 0 && line % kBlockCells == 0) show_blocks(line / kBlockCells);
-                if (q_.step < 0 && line + 1 == q_.lines) show_blocks((line - 1) / kBlockCells);
-                if (q_.step < 0 && line + 1 != q_.lines && line % kBlockCells == 0) {
-                    show_blocks(line / kBlockCells - 1);
-                }
-            }
+            // Of the cells behind the line.
+            const int next = (q_.step > 0 ? line : line - 1) / kBlockCells;
+            if (with_blocks_ && next != shown) show_blocks(shown = next);
             hide_samples(line, distance);
             // The rim of a sample's own cells hides nothing where it is the border of the extent.
             if (line > 0 && line + 1 < q_.lines && distance >= q_.nearest) raise(line, distance);
