@@ -94,15 +94,15 @@ Measured measure(run::Stage& stage, const Options& options,
         }
         last = record;
     }
-    results::CellResult result;
-    measurer.finish(result);
-    const auto per_frame = [&](const char* field) {
-        return result.truth[field]["count"].asUInt64() / unsigned(options.repetitions + 1);
+    results::CellRecord cell;
+    measurer.finish(cell);
+    const auto per_frame = [&](const std::optional<results::ErrorFigures>& errors) {
+        return errors ? errors->count / unsigned(options.repetitions + 1) : 0;
     };
     const bool all = extent == measure::Extent::all;
     return {*measure::percentile(walls, 0.5), *measure::percentile(cpus, 0.5),
-            double(*last.triangles), all ? per_frame("screen_error_px") : 0,
-            all ? per_frame("visible_error_px") : 0};
+            double(*last.triangles), all ? per_frame(cell.screen_error_px) : 0,
+            all ? per_frame(cell.visible_error_px) : 0};
 }
 
 void measure_frames(const Options& options, int size) {

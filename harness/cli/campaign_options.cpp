@@ -164,14 +164,13 @@ void Progress::line(const std::string& text) const {
 }
 
 void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
-                             const Json::Value& record) {
+                             const results::CellRecord& record) {
     ++finished_;
-    const std::string status = record["status"].asString();
-    std::string words = status;
-    if (record["fps"].isNumeric() && status == "ok") {
-        words += fmt::format(", {:.1f} fps", record["fps"].asDouble());
-    } else if (record["reason"].isString()) {
-        words += ": " + record["reason"].asString();
+    std::string words = name_of(record.status);
+    if (record.fps && record.status == results::CellStatus::ok) {
+        words += fmt::format(", {:.1f} fps", *record.fps);
+    } else if (!record.reason.empty()) {
+        words += ": " + record.reason;
     }
     line(fmt::format("[{}/{}] {} {}{}", index + 1, count, cell.spec.id, words,
                      time_left(count - index - 1, 0)));
@@ -214,7 +213,7 @@ Json::Value to_json(const run::CampaignOutcome& outcome) {
     object["warnings"] = Json::arrayValue;
     for (const std::string& warning : outcome.warnings) object["warnings"].append(warning);
     object["cells"] = Json::arrayValue;
-    for (const Json::Value& cell : outcome.cells) object["cells"].append(cell);
+    for (const auto& cell : outcome.cells) object["cells"].append(results::to_json(cell));
     return object;
 }
 

@@ -56,7 +56,7 @@ public:
     void cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        double fraction) override;
     void cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
-                       const Json::Value& record) override;
+                       const results::CellRecord& record) override;
     [[nodiscard]] std::string summary(const run::CampaignOutcome& outcome,
                                       const Json::Value& run) override;
     /// A line in the place of the one that was redrawn last.

@@ -25,18 +25,22 @@ struct Options : CampaignOptions {
     std::vector<int> frames;
 };
 
-std::string px(const Json::Value& value) {
-    const auto number = results::read_number_or_inf(value);
-    return number ? fmt::format("{:.4g}", *number) : "-";
+template <typename Value>
+std::string text_of(const std::optional<Value>& value, const char* format) {
+    return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-std::string economy_text(const std::vector<Json::Value>& cells) {
+void add_fewest(std::vector<std::string>& line, const std::optional<results::FewestFigures>& at) {
+    const results::FewestFigures fewest = at.value_or(results::FewestFigures());
+    line.push_back(text_of(fewest.target_px, "{:.4g}"));
+    line.push_back(text_of(fewest.minimal_triangles, "{}"));
+    line.push_back(text_of(fewest.ratio, "{:.2f}"));
+}
+
+std::string economy_text(const std::vector<results::CellRecord>& cells) {
     using Lines = std::vector<std::vector<std::string>>;
     std::map<std::string, Lines> scenarios;
     std::string failures;
-    const auto count = [](const Json::Value& value) {
-        return value.isUInt64() ? fmt::format("{}", value.asUInt64()) : "-";
-    };
     for (const results::CellGroup& group : results::group_cells(cells)) {
         Lines& lines =
             scenarios
@@ -47,24 +51,18 @@ std::string economy_text(const std::vector<Json::Value>& cells) {
         for (const std::string& failure : results::failures_of(group)) {
             failures += fmt::format("- {}, {}: {}\n", group.label, group.scenario, failure);
         }
-        for (const Json::Value* cell : group.good) {
-            if ((*cell)["economy"].empty()) {
+        for (const results::CellRecord* cell : group.good) {
+            if (!cell->economy) {
                 failures += fmt::format("- {}, {}: no sample in view is covered in these frames\n",
                                         group.label, group.scenario);
+                continue;
             }
-            for (const Json::Value& frame : (*cell)["economy"]) {
-                std::vector<std::string> line = {
-                    group.label, fmt::format("{}", frame["frame"].asInt()),
-                    count(frame["triangles"]), count(frame["full_triangles"])};
-                for (const char* bound : {"p999", "max"}) {
-                    const Json::Value& fewest = results::member_of(frame, bound);
-                    line.push_back(px(results::member_of(fewest, "target_px")));
-                    line.push_back(count(results::member_of(fewest, "minimal_triangles")));
-                    const Json::Value& ratio = results::member_of(fewest, "ratio");
-                    line.push_back(ratio.isNumeric() ? fmt::format("{:.2f}", ratio.asDouble())
-                                                     : "-");
-                }
-                lines.push_back(std::move(line));
+            for (const results::EconomyFrame& frame : *cell->economy) {
+                std::vector<std::string>& line = lines.emplace_back();
+                line = {group.label, fmt::format("{}", frame.frame), text_of(frame.triangles, "{}"),
+                        text_of(frame.full_triangles, "{}")};
+                add_fewest(line, frame.p999);
+                add_fewest(line, frame.max);
             }
         }
     }

@@ -113,10 +113,10 @@ std::string outcome_remarks(const std::vector<run::MatchedMethod>& methods) {
 
 /// What the final flights of a method measured: the median over its repetitions.
 std::optional<double> flown(const results::MatchTarget& target, const std::string& method,
-                            const std::vector<Json::Value>& cells) {
+                            const std::vector<results::CellRecord>& cells) {
     std::vector<double> values;
-    for (const Json::Value& cell : cells) {
-        if (cell["method"] != method) continue;
+    for (const results::CellRecord& cell : cells) {
+        if (cell.method != method) continue;
         if (const auto value = target.measured(cell)) values.push_back(*value);
     }
     return measure::median(values);
@@ -125,7 +125,7 @@ std::optional<double> flown(const results::MatchTarget& target, const std::strin
 /// What was found and what was flown there, a line a method.
 std::string search_text(const results::MatchTarget& target,
                         const std::vector<run::MatchedMethod>& methods,
-                        const std::vector<Json::Value>& cells) {
+                        const std::vector<results::CellRecord>& cells) {
     std::vector<std::vector<std::string>> lines = {
         {"method", "knob", "achieved", "flown", "outcome", "probes"}};
     std::string remarks = outcome_remarks(methods);

@@ -13,6 +13,8 @@
 #include "results/json.h"
 
 namespace lodbench::report {
+
+using namespace results::figures;
 namespace {
 
 constexpr double kTie = 0.05;       // ratio of frame times: one flight says no more
@@ -32,25 +34,24 @@ std::optional<std::string> knob_text(const results::CellGroup& group,
     const auto knob = knobs.find(group.method);
     if (knob == knobs.end()) return std::nullopt;
     return fmt::format("{} = {}", knob->second,
-                       results::value_text(results::member_of(*group.good.front(), "params",
-                                                              knob->second.c_str())));
+                       results::param_text(*group.good.front(), knob->second));
 }
 
 EqualRow row_of(const results::CellGroup& group, const EqualFlight& flight,
                 const std::map<std::string, std::string>& knobs) {
-    const auto middle = [&](const char* key, const char* inner) {
-        return measure::median(results::numbers_of(group.good, key, inner));
+    const auto middle = [&](const results::CellFigure& figure) {
+        return measure::median(results::numbers_of(group.good, figure));
     };
     EqualRow row;
     row.group = &group;
     row.knob = knob_text(group, knobs);
-    row.frame_ms = middle("frame_ms", "median");
-    row.slowest_ms = middle("frame_ms", "max");
-    row.triangles = middle("triangles", "mean");
+    row.frame_ms = middle(of<&Cell::frame_ms, &TimeSummary::median>);
+    row.slowest_ms = middle(of<&Cell::frame_ms, &TimeSummary::max>);
+    row.triangles = middle(of<&Cell::triangles, &CountSummary::mean>);
     row.error = results::pixel_error(group, results::ErrorMetric::p999);
-    row.settled = middle("pixel_error_px", "p999");
-    row.claimed = middle("claimed_px", nullptr);
-    row.honesty = middle("bound_honesty", nullptr);
+    row.settled = middle(of<&Cell::pixel_error_px, &ErrorFigures::p999>);
+    row.claimed = middle(of<&Cell::claimed_px>);
+    row.honesty = middle(of<&Cell::bound_honesty>);
     if (row.error && flight.meets(*row.error)) {
         row.place = EqualRow::Place::equal;
     } else if (row.error && *row.error < kExactPx && !row.knob) {
@@ -250,7 +251,7 @@ std::vector<std::string> equal_words(const EqualFlight& flight, const std::vecto
     return lines;
 }
 
-std::string equal_text(const EqualFlight& flight, const std::vector<Json::Value>& cells,
+std::string equal_text(const EqualFlight& flight, const std::vector<results::CellRecord>& cells,
                        const std::map<std::string, std::string>& knobs) {
     const std::vector<results::CellGroup> groups = results::group_cells(cells);
     const std::vector<EqualRow> rows = equal_rows(flight, groups, knobs);

@@ -60,10 +60,9 @@ struct EqualRow {
 [[nodiscard]] std::vector<std::string> equal_words(const EqualFlight& flight,
                                                    const std::vector<EqualRow>& rows);
 
-/// Markdown, readable in a terminal: heading, table and words. `cells` are the objects of
-/// cells.jsonl.
+/// Markdown, readable in a terminal: heading, table and words.
 [[nodiscard]] std::string equal_text(const EqualFlight& flight,
-                                     const std::vector<Json::Value>& cells,
+                                     const std::vector<results::CellRecord>& cells,
                                      const std::map<std::string, std::string>& knobs);
 
 }  // namespace lodbench::report

@@ -10,7 +10,7 @@
 namespace lodbench::report {
 namespace {
 
-std::string equal_texts(const std::vector<Json::Value>& cells, const Json::Value& run) {
+std::string equal_texts(const std::vector<results::CellRecord>& cells, const Json::Value& run) {
     const auto knobs = quality_knobs(run);
     std::string text;
     for (const EqualFlight& flight : equal_flights(run)) {
@@ -21,7 +21,7 @@ std::string equal_texts(const std::vector<Json::Value>& cells, const Json::Value
 
 }  // namespace
 
-std::string summary_text(const std::vector<Json::Value>& cells,
+std::string summary_text(const std::vector<results::CellRecord>& cells,
                          const std::vector<std::string>& warnings, const Json::Value& run) {
     const std::uint64_t seed = run["seed"].asUInt64();
     const auto line = [](const char* title, const Json::Value& value) {

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "results/cell.h"
+
 namespace lodbench::report {
 
 /// Markdown: the tables first, warnings and context folded away below. `cells` are the objects of
 /// cells.jsonl, `run` that of run.json.
-[[nodiscard]] std::string summary_text(const std::vector<Json::Value>& cells,
+[[nodiscard]] std::string summary_text(const std::vector<results::CellRecord>& cells,
                                        const std::vector<std::string>& warnings,
                                        const Json::Value& run);
 

@@ -11,6 +11,8 @@
 
 namespace lodbench::report {
 
+using namespace results::figures;
+
 namespace {
 
 constexpr const char* kAbsent = "-";
@@ -25,8 +27,8 @@ std::string greatest(const std::vector<double>& values, const char* format, doub
     return fmt::format(fmt::runtime(format), *std::ranges::max_element(values) / unit);
 }
 
-std::string fps_text(const std::vector<const Json::Value*>& cells, std::uint64_t seed) {
-    const auto interval = measure::run_interval(results::numbers_of(cells, "fps"), seed);
+std::string fps_text(const std::vector<const results::CellRecord*>& cells, std::uint64_t seed) {
+    const auto interval = measure::run_interval(results::numbers_of(cells, of<&Cell::fps>), seed);
     if (!interval) return kAbsent;
     return fmt::format("{:.1f} ({:.1f}..{:.1f})", interval->centre, interval->low, interval->high);
 }
@@ -61,7 +63,8 @@ const std::vector<std::string>& table_columns() {
     return columns;
 }
 
-std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uint64_t seed) {
+std::vector<TableRow> table_rows(const std::vector<results::CellRecord>& cells,
+                                 std::uint64_t seed) {
     std::vector<TableRow> rows;
     for (const results::CellGroup& group : results::group_cells(cells)) {
         TableRow row{group.scenario,
@@ -73,18 +76,23 @@ std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells, std::uin
         const auto& good = group.good;
         row.fields = {
             fps_text(good, seed),
-            median(results::numbers_of(good, "frame_ms", "median"), "{:.3f}"),
-            median(results::numbers_of(good, "frame_ms", "p90"), "{:.3f}"),
-            greatest(results::numbers_of(good, "frame_ms", "max"), "{:.3f}"),
-            median(results::numbers_of(good, "triangles", "mean"), "{:.0f}"),
-            median(results::numbers_of(good, "prepare_s"), "{:.3f}"),
-            median(results::numbers_of(good, "gpu_bytes"), "{:.1f}", results::kMebibyte),
-            greatest(results::numbers_of(good, "peak_rss_bytes"), "{:.0f}", results::kMebibyte),
-            median(results::numbers_of(good, "pixel_error_px", "p999"), "{:.2f}"),
-            median(results::numbers_of(good, "pixel_error_px", "max"), "{:.2f}"),
-            median(results::numbers_of(good, "crack_pixels", "total"), "{:.0f}"),
-            median(results::numbers_of(good, "popping_px", "p999"), "{:.2f}"),
-            median(results::numbers_of(good, "bound_honesty"), "{:.3f}")};
+            median(results::numbers_of(good, of<&Cell::frame_ms, &TimeSummary::median>), "{:.3f}"),
+            median(results::numbers_of(good, of<&Cell::frame_ms, &TimeSummary::p90>), "{:.3f}"),
+            greatest(results::numbers_of(good, of<&Cell::frame_ms, &TimeSummary::max>), "{:.3f}"),
+            median(results::numbers_of(good, of<&Cell::triangles, &CountSummary::mean>), "{:.0f}"),
+            median(results::numbers_of(good, of<&Cell::prepare_s>), "{:.3f}"),
+            median(results::numbers_of(good, of<&Cell::gpu_bytes>), "{:.1f}", results::kMebibyte),
+            greatest(results::numbers_of(good, of<&Cell::peak_rss_bytes>), "{:.0f}",
+                     results::kMebibyte),
+            median(results::numbers_of(good, of<&Cell::pixel_error_px, &ErrorFigures::p999>),
+                   "{:.2f}"),
+            median(results::numbers_of(good, of<&Cell::pixel_error_px, &ErrorFigures::max>),
+                   "{:.2f}"),
+            median(results::numbers_of(good, of<&Cell::crack_pixels, &TotalAndMax::total>),
+                   "{:.0f}"),
+            median(results::numbers_of(good, of<&Cell::popping_px, &PoppingFigures::p999>),
+                   "{:.2f}"),
+            median(results::numbers_of(good, of<&Cell::bound_honesty>), "{:.3f}")};
         rows.push_back(std::move(row));
     }
     return rows;

@@ -1,10 +1,11 @@
 #pragma once
-// The table at the end of a run, from the objects of cells.jsonl.
+// The table at the end of a run, from the cells.
 
-#include <json/value.h>
-
+#include <cstdint>
 #include <string>
 #include <vector>
+
+#include "results/cell.h"
 
 namespace lodbench::report {
 
@@ -22,7 +23,7 @@ struct TableRow {
 [[nodiscard]] const std::vector<std::string>& table_columns();
 
 /// Rows in order of scenario, method and setting. `seed` is that of the bootstrap.
-[[nodiscard]] std::vector<TableRow> table_rows(const std::vector<Json::Value>& cells,
+[[nodiscard]] std::vector<TableRow> table_rows(const std::vector<results::CellRecord>& cells,
                                                std::uint64_t seed);
 
 /// For a terminal: columns aligned, one block a scenario, noise and failures below. For summary.md:

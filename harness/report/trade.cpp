@@ -13,6 +13,8 @@
 #include "results/json.h"
 
 namespace lodbench::report {
+
+using namespace results::figures;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -164,7 +166,7 @@ TradePoint trade_point(std::span<const double> costs, std::optional<double> erro
 
 TradePoint trade_point(const results::CellGroup& group, results::ErrorMetric metric,
                        std::uint64_t seed) {
-    return trade_point(results::numbers_of(group.good, "frame_ms", "mean"),
+    return trade_point(results::numbers_of(group.good, of<&Cell::frame_ms, &TimeSummary::mean>),
                        results::pixel_error(group, metric), seed);
 }
 
@@ -196,7 +198,7 @@ std::vector<MethodTrade> method_trades(
     return trades;
 }
 
-std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
+std::vector<TradeRow> trade_rows(const std::vector<results::CellRecord>& cells,
                                  const std::map<std::string, std::string>& knobs,
                                  results::ErrorMetric metric, std::uint64_t seed) {
     std::vector<TradeRow> rows;
@@ -208,17 +210,17 @@ std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
         row.failures = results::failures_of(group);
         row.noise = results::noise_of(group);
         const auto knob = knobs.find(group.method);
-        for (const Json::Value* cell : group.good) {
-            if (knob != knobs.end())
-                row.knob = results::read_number_or_inf((*cell)["params"][knob->second]);
+        if (knob != knobs.end() && !group.good.empty()) {
+            row.knob = results::param_number(*group.good.back(), knob->second);
         }
         row.error = results::pixel_error(group, metric);
         row.point = trade_point(group, metric, seed);
-        row.frame_ms =
-            measure::run_interval(results::numbers_of(group.good, "frame_ms", "mean"), seed);
-        row.triangles = measure::median(results::numbers_of(group.good, "triangles", "mean"));
-        row.gpu_bytes = measure::median(results::numbers_of(group.good, "gpu_bytes"));
-        row.prepare_s = measure::median(results::numbers_of(group.good, "prepare_s"));
+        row.frame_ms = measure::run_interval(
+            results::numbers_of(group.good, of<&Cell::frame_ms, &TimeSummary::mean>), seed);
+        row.triangles = measure::median(
+            results::numbers_of(group.good, of<&Cell::triangles, &CountSummary::mean>));
+        row.gpu_bytes = measure::median(results::numbers_of(group.good, of<&Cell::gpu_bytes>));
+        row.prepare_s = measure::median(results::numbers_of(group.good, of<&Cell::prepare_s>));
         rows.push_back(std::move(row));
     }
     std::ranges::stable_sort(rows, {}, [](const TradeRow& row) {

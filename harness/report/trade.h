@@ -84,7 +84,7 @@ struct TradeRow {
 };
 
 /// `knobs`: each method's quality knob by its id. Rows in order of scenario, method and knob.
-[[nodiscard]] std::vector<TradeRow> trade_rows(const std::vector<Json::Value>& cells,
+[[nodiscard]] std::vector<TradeRow> trade_rows(const std::vector<results::CellRecord>& cells,
                                                const std::map<std::string, std::string>& knobs,
                                                results::ErrorMetric metric, std::uint64_t seed);
 

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <optional>
+#include <set>
 #include <tuple>
-
-#include "results/json.h"
+#include <utility>
 
 namespace lodbench::results {
 
@@ -13,14 +15,12 @@ namespace {
 /// Of each method the parameters that have more than one value among its cells.
 using SweptNames = std::map<std::string, std::set<std::string>>;
 
-SweptNames swept_names(const std::vector<Json::Value>& cells) {
+SweptNames swept_names(const std::vector<CellRecord>& cells) {
     std::map<std::string, std::map<std::string, std::set<std::string>>> values;
-    for (const Json::Value& cell : cells) {
-        const Json::Value& params = cell["params"];
-        if (!params.isObject()) continue;
-        auto& of_method = values[cell["method"].asString()];
-        for (auto param = params.begin(); param != params.end(); ++param) {
-            of_method[param.name()].insert(value_text(*param));
+    for (const CellRecord& cell : cells) {
+        auto& of_method = values[cell.method];
+        for (const auto& [name, value] : cell.params.values()) {
+            of_method[name].insert(value_text(value));
         }
     }
     SweptNames swept;
@@ -32,132 +32,130 @@ SweptNames swept_names(const std::vector<Json::Value>& cells) {
     return swept;
 }
 
+const std::set<std::string>& swept_of(const CellRecord& cell, const SweptNames& swept) {
+    static const std::set<std::string> none;
+    const auto names = swept.find(cell.method);
+    return names == swept.end() ? none : names->second;
+}
+
 /// For an order in which 2 comes before 10: the swept parameters' values, numbers by their size.
 using SettingOrder = std::vector<std::pair<double, std::string>>;
 
-SettingOrder order_of(const Json::Value& cell, const SweptNames& swept) {
+SettingOrder order_of(const CellRecord& cell, const SweptNames& swept) {
     SettingOrder order;
-    const auto names = swept.find(cell["method"].asString());
-    if (names == swept.end()) return order;
-    for (const std::string& name : names->second) {
-        const Json::Value& value = member_of(cell, "params", name.c_str());
-        const bool number = value.isNumeric();
-        order.emplace_back(number ? value.asDouble() : 0.0, number ? "" : value_text(value));
+    for (const std::string& name : swept_of(cell, swept)) {
+        const std::optional<double> number = param_number(cell, name);
+        order.emplace_back(number.value_or(0.0), number ? "" : param_text(cell, name));
     }
     return order;
 }
 
-std::string setting_of(const Json::Value& cell, const SweptNames& swept) {
+std::string setting_of(const CellRecord& cell, const SweptNames& swept) {
     std::string setting;
-    const auto names = swept.find(cell["method"].asString());
-    if (names == swept.end()) return setting;
-    for (const std::string& name : names->second) {
-        setting += fmt::format("{}{}={}", setting.empty() ? "" : " ", name,
-                               value_text(member_of(cell, "params", name.c_str())));
+    for (const std::string& name : swept_of(cell, swept)) {
+        setting += fmt::format("{}{}={}", setting.empty() ? "" : " ", name, param_text(cell, name));
     }
     return setting;
+}
+
+/// In words, where the cells that have `read` of it do not agree.
+template <typename Read>
+void add_disagreement(std::vector<std::string>& texts, const std::vector<const CellRecord*>& cells,
+                      const char* words, const Read& read) {
+    const CellRecord* first = nullptr;
+    for (const CellRecord* cell : cells) {
+        const auto value = read(*cell);
+        if (!value) continue;  // not measured, or of an older version
+        if (first == nullptr) first = cell;
+        const auto expected = read(*first);
+        if (*value == *expected) continue;
+        texts.push_back(fmt::format(
+            "{} differ between repetitions: {} in repetition {}, {} in repetition {}; its "
+            "figures are those of more than one picture",
+            words, *expected, first->repetition, *value, cell->repetition));
+        return;
+    }
 }
 
 }  // namespace
 
 std::vector<std::string> failures_of(const CellGroup& group) {
     std::vector<std::string> failures;
-    for (const Json::Value* cell : group.cells) {
-        if ((*cell)["status"].asString() == "ok") continue;
-        failures.push_back(fmt::format("{} (repetition {}): {}", (*cell)["status"].asString(),
-                                       (*cell)["repetition"].asInt(),
-                                       (*cell)["reason"].asString()));
+    for (const CellRecord* cell : group.cells) {
+        if (cell->status == CellStatus::ok) continue;
+        failures.push_back(fmt::format("{} (repetition {}): {}", name_of(cell->status),
+                                       cell->repetition, cell->reason));
     }
     return failures;
 }
 
 std::vector<std::string> disagreements_of(const CellGroup& group) {
-    struct Figure {
-        const char* key;
-        const char* inner;
+    using figures::Cell, figures::of;
+    struct Lockstep {
+        CellFigure figure;
         const char* words;
     };
-    static constexpr Figure kLockstep[] = {
-        {"triangles", "mean", "triangles a frame"},
-        {"triangles", "min", "the least triangles of a frame"},
-        {"triangles", "max", "the most triangles of a frame"},
-        {"draw_calls", "mean", "draw calls a frame"},
-        {"samples_prepared", nullptr, "samples asked for in preparation"},
-        {"shots_hash", nullptr, "hashes of the depth images"},
+    static constexpr Lockstep kLockstep[] = {
+        {of<&Cell::triangles, &CountSummary::mean>, "triangles a frame"},
+        {of<&Cell::triangles, &CountSummary::min>, "the least triangles of a frame"},
+        {of<&Cell::triangles, &CountSummary::max>, "the most triangles of a frame"},
+        {of<&Cell::draw_calls, &CountSummary::mean>, "draw calls a frame"},
+        {of<&Cell::samples_prepared>, "samples asked for in preparation"},
     };
     std::vector<std::string> texts;
-    for (const Figure& figure : kLockstep) {
-        const Json::Value* first = nullptr;
-        for (const Json::Value* cell : group.good) {
-            const Json::Value& value = member_of(*cell, figure.key, figure.inner);
-            if (value.isNull()) continue;  // not measured, or of an older version
-            if (first == nullptr) first = cell;
-            const Json::Value& expected = member_of(*first, figure.key, figure.inner);
-            if (value == expected) continue;
-            texts.push_back(fmt::format(
-                "{} differ between repetitions: {} in repetition {}, {} in repetition {}; its "
-                "figures are those of more than one picture",
-                figure.words, value_text(expected), (*first)["repetition"].asInt(),
-                value_text(value), (*cell)["repetition"].asInt()));
-            break;
-        }
+    for (const Lockstep& lockstep : kLockstep) {
+        add_disagreement(texts, group.good, lockstep.words, lockstep.figure);
     }
+    add_disagreement(texts, group.good, "hashes of the depth images", [](const CellRecord& cell) {
+        return cell.shots_hash.empty() ? std::nullopt : std::optional(cell.shots_hash);
+    });
     return texts;
 }
 
 std::vector<std::string> noise_of(const CellGroup& group) {
     std::vector<std::string> texts;
-    for (const Json::Value* cell : group.good) {
-        const Json::Value& noise = (*cell)["noise"];
-        if (!noise.isString()) continue;
-        texts.push_back(
-            fmt::format("repetition {}: {}", (*cell)["repetition"].asInt(), noise.asString()));
+    for (const CellRecord* cell : group.good) {
+        if (cell->noise.empty()) continue;
+        texts.push_back(fmt::format("repetition {}: {}", cell->repetition, cell->noise));
     }
     return texts;
 }
 
-std::string value_text(const Json::Value& value) {
-    if (value.isString()) return value.asString();
-    if (value.isBool()) return value.asBool() ? "true" : "false";
-    if (value.isIntegral() && value.isInt64()) return fmt::format("{}", value.asInt64());
-    return value.isNumeric() ? fmt::format("{}", value.asDouble()) : "-";
+std::string value_text(const ParamValue& value) {
+    return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
 }
 
-const Json::Value& member_of(const Json::Value& cell, const char* key, const char* inner) {
-    const Json::Value& outer = cell.isObject() ? cell[key] : Json::Value::nullSingleton();
-    if (inner == nullptr) return outer;
-    return outer.isObject() ? outer[inner] : Json::Value::nullSingleton();
+std::string param_text(const CellRecord& cell, const std::string& name) {
+    const auto& values = cell.params.values();
+    const auto value = values.find(name);
+    return value == values.end() ? "-" : value_text(value->second);
 }
 
-std::vector<double> numbers_of(const std::vector<const Json::Value*>& cells, const char* key,
-                               const char* inner) {
-    std::vector<double> values;
-    for (const Json::Value* cell : cells) {
-        if (const auto number = read_number_or_inf(member_of(*cell, key, inner))) {
-            values.push_back(*number);
-        }
-    }
-    return values;
+std::optional<double> param_number(const CellRecord& cell, const std::string& name) {
+    const auto& values = cell.params.values();
+    const auto value = values.find(name);
+    if (value == values.end()) return std::nullopt;
+    if (const auto* integer = std::get_if<std::int64_t>(&value->second)) return double(*integer);
+    if (const double* real = std::get_if<double>(&value->second)) return *real;
+    return std::nullopt;
 }
 
-std::vector<CellGroup> group_cells(const std::vector<Json::Value>& cells) {
+std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {
     const SweptNames swept = swept_names(cells);
     // By scenario, method, setting; the label keeps apart what the order does not.
     std::map<std::tuple<std::string, std::string, SettingOrder, std::string>, CellGroup> groups;
-    for (const Json::Value& cell : cells) {
-        const std::string method = cell["method"].asString();
+    for (const CellRecord& cell : cells) {
         const std::string setting = setting_of(cell, swept);
-        const std::string label = setting.empty() ? method : method + " " + setting;
-        CellGroup& group =
-            groups[{cell["scenario"].asString(), method, order_of(cell, swept), label}];
+        const std::string label = setting.empty() ? cell.method : cell.method + " " + setting;
+        CellGroup& group = groups[{cell.scenario, cell.method, order_of(cell, swept), label}];
         if (group.cells.empty()) {
-            group.scenario = cell["scenario"].asString();
-            group.method = method;
+            group.scenario = cell.scenario;
+            group.method = cell.method;
             group.label = label;
             group.setting = setting;
         }
         group.cells.push_back(&cell);
-        if (cell["status"].asString() == "ok") group.good.push_back(&cell);
+        if (cell.status == CellStatus::ok) group.good.push_back(&cell);
     }
     std::vector<CellGroup> result;
     result.reserve(groups.size());

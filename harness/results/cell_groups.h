@@ -1,14 +1,12 @@
 #pragma once
-// The repetitions of one setting, gathered from the objects of cells.jsonl: what a row of a table
+// The repetitions of one setting, gathered from its cells: what a row of a table
 // is about.
 
-#include <json/value.h>
-
-#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
+
+#include "results/cell.h"
 
 namespace lodbench::results {
 
@@ -20,12 +18,12 @@ struct CellGroup {
     std::string method;
     std::string label;    ///< the method's id and the parameters that differ between its groups
     std::string setting;  ///< the latter alone: "tau=0.5"; "" where there is one setting
-    std::vector<const Json::Value*> cells;  ///< all repetitions
-    std::vector<const Json::Value*> good;   ///< those that are ok
+    std::vector<const CellRecord*> cells;  ///< all repetitions
+    std::vector<const CellRecord*> good;   ///< those that are ok
 };
 
 /// In order of scenario, method and setting, numbers by their size; pointers into `cells`.
-[[nodiscard]] std::vector<CellGroup> group_cells(const std::vector<Json::Value>& cells);
+[[nodiscard]] std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells);
 
 /// "status (repetition n): reason" of those that are not ok.
 [[nodiscard]] std::vector<std::string> failures_of(const CellGroup& group);
@@ -37,15 +35,22 @@ struct CellGroup {
 /// "repetition n: ..." of those whose times something else disturbed.
 [[nodiscard]] std::vector<std::string> noise_of(const CellGroup& group);
 
-/// A parameter's value as text.
-[[nodiscard]] std::string value_text(const Json::Value& value);
+/// "true", "12", "0.5"
+[[nodiscard]] std::string value_text(const ParamValue& value);
+/// The value of a parameter; "-" where the cell has none of that name.
+[[nodiscard]] std::string param_text(const CellRecord& cell, const std::string& name);
+/// Nothing where the cell has none of that name, or it is no number.
+[[nodiscard]] std::optional<double> param_number(const CellRecord& cell, const std::string& name);
 
-/// The member `inner` (where not null) of the member `key`; null where either is not there.
-[[nodiscard]] const Json::Value& member_of(const Json::Value& cell, const char* key,
-                                           const char* inner = nullptr);
-
-/// The numbers there, infinity included, of the cells that have one.
-[[nodiscard]] std::vector<double> numbers_of(const std::vector<const Json::Value*>& cells,
-                                             const char* key, const char* inner = nullptr);
+/// The numbers, infinity included, of the records that have one.
+template <typename Record>
+std::vector<double> numbers_of(const std::vector<const Record*>& records,
+                               const Figure<Record>& figure) {
+    std::vector<double> values;
+    for (const Record* record : records) {
+        if (const auto number = figure(*record)) values.push_back(*number);
+    }
+    return values;
+}
 
 }  // namespace lodbench::results

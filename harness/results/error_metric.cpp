@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "measure/statistics.h"
-#include "results/json.h"
 
 namespace lodbench::results {
 
@@ -23,17 +22,21 @@ std::optional<ErrorMetric> error_metric(const std::string& name) {
     return std::nullopt;
 }
 
-std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric) {
-    for (const char* field : {"pixel_error_realtime_px", "pixel_error_px"}) {
-        const Json::Value& errors = cell[field];
-        if (errors.isObject()) return read_number_or_inf(errors[name_of(metric)]);
+std::optional<double> pixel_error(const CellRecord& cell, ErrorMetric metric) {
+    const auto& errors =
+        cell.pixel_error_realtime_px ? cell.pixel_error_realtime_px : cell.pixel_error_px;
+    if (!errors) return std::nullopt;
+    switch (metric) {
+        case ErrorMetric::p999: return errors->p999;
+        case ErrorMetric::max: return errors->max;
+        case ErrorMetric::rms: break;
     }
-    return std::nullopt;
+    return errors->rms;
 }
 
 std::optional<double> pixel_error(const CellGroup& group, ErrorMetric metric) {
     std::vector<double> errors;
-    for (const Json::Value* cell : group.good) {
+    for (const CellRecord* cell : group.good) {
         if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
     }
     return measure::median(errors);

@@ -2,8 +2,6 @@
 // The error that methods are compared by: which summary of the pixel error, and its value in a
 // cell.
 
-#include <json/value.h>
-
 #include <optional>
 #include <string>
 
@@ -17,10 +15,10 @@ enum class ErrorMetric { p999, max, rms };
 /// "p999", "max", "rms"; nothing for anything else.
 [[nodiscard]] std::optional<ErrorMetric> error_metric(const std::string& name);
 
-/// The pixel error of a cell (an object of cells.jsonl): of the real-time replay where there is
+/// The pixel error of a cell: of the real-time replay where there is
 /// one, for that is the surface which the frame times drew. Infinite where it is; nothing where it
 /// was not measured.
-[[nodiscard]] std::optional<double> pixel_error(const Json::Value& cell, ErrorMetric metric);
+[[nodiscard]] std::optional<double> pixel_error(const CellRecord& cell, ErrorMetric metric);
 /// The median over the repetitions.
 [[nodiscard]] std::optional<double> pixel_error(const CellGroup& group, ErrorMetric metric);
 

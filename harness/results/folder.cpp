@@ -10,7 +10,6 @@
 
 #include "api/error.h"
 #include "base/files.h"
-#include "results/cell_groups.h"
 #include "results/json.h"
 
 namespace lodbench::results {
@@ -21,11 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kKeptColumns = {"frame", "wall_ms", "triangles",
                                                           "pixel_p999_px", "popping_p999_px"};
-
-bool is_file_name(const std::string& name) {
-    return !name.empty() && name != "." && name != ".." && name.find('/') == name.npos &&
-           name.find('\0') == name.npos;
-}
 
 std::string read_input(const fs::path& file, const char* remedy) {
     std::error_code error;
@@ -56,30 +50,6 @@ double parse_field(std::string_view text, std::string_view column, const std::st
                                      column, kCopyAgain));
     }
     return value;
-}
-
-// What a cell holds that is shown or computed with: figures, and objects of figures.
-constexpr std::array kFigures = {
-    "frames",        "fps",           "jank_ms",        "prepare_s",         "prepare_cpu_s",
-    "upload_s",      "gpu_bytes",     "peak_rss_bytes", "samples_served",    "samples_prepared",
-    "tiles_served",  "claimed_px",    "truth_frames",   "uncovered_samples", "terrain_bytes_read",
-    "bound_honesty", "wall_triangles"};
-constexpr std::array kSummaries = {
-    "frame_ms",       "select_ms",        "submit_ms",      "gpu_ms",
-    "cpu_ms",         "triangles",        "draw_calls",     "triangles_nondegenerate",
-    "uploaded_bytes", "screen_error_px",  "pixel_error_px", "pixel_error_realtime_px",
-    "crack_pixels",   "visible_error_px", "skirt_pixels",   "silhouette_px",
-    "popping_px",     "height_rmse_m",    "image",          "counters"};
-
-bool is_figure(const Json::Value& value) {
-    return value.isNull() || read_number_or_inf(value).has_value();
-}
-
-bool is_summary(const Json::Value& value) {
-    return value.isNull() ||
-           (value.isObject() && std::all_of(value.begin(), value.end(), [](const auto& member) {
-                return is_figure(member) || member.isObject();  // of the worst, its place
-            }));
 }
 
 void check_schema(const Json::Value& json, const fs::path& file) {
@@ -115,11 +85,11 @@ void read_cells(ResultFolder& folder) {
     std::size_t begin = 0;
     for (std::size_t end = 0; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
         const std::string where = fmt::format("{}:{}", file.string(), line++);
-        Json::Value cell = parse_sealed(std::string_view(text).substr(begin, end - begin), where);
-        check_cell(cell, where);
-        if (!ids.insert(cell["cell"].asString()).second) {
+        CellRecord cell = read_cell(
+            parse_sealed(std::string_view(text).substr(begin, end - begin), where), where);
+        if (!ids.insert(cell.cell).second) {
             throw InputError(fmt::format("{}: cell '{}' is there twice; remove one of its lines",
-                                         where, cell["cell"].asString()));
+                                         where, cell.cell));
         }
         folder.cells.push_back(std::move(cell));
     }
@@ -205,8 +175,8 @@ FlightRecord read_flight(const fs::path& file, const fs::path& picture) {
 }
 
 void read_flights(ResultFolder& folder) {
-    for (const Json::Value& cell : folder.cells) {
-        const std::string name = cell["scenario"].asString();
+    for (const CellRecord& cell : folder.cells) {
+        const std::string& name = cell.scenario;
         if (!is_file_name(name) || folder.flights.contains(name)) continue;
         const fs::path file = folder.path / "flights" / (name + ".json");
         std::error_code absent;
@@ -227,11 +197,6 @@ void read_search(ResultFolder& folder) {
 
 }  // namespace
 
-void expect_file_name(const std::string& name, const char* what, const std::string& where) {
-    if (is_file_name(name)) return;
-    throw InputError(fmt::format("{}: '{}' is no name of a {}; {}", where, name, what, kCopyAgain));
-}
-
 void expect_plain_file(const fs::path& file) {
     std::error_code ignored;
     const fs::file_type type = fs::symlink_status(file, ignored).type();
@@ -240,41 +205,6 @@ void expect_plain_file(const fs::path& file) {
         fmt::format("{}: this is no plain file (but a link, pipe, folder or device); "
                     "put the file itself there",
                     file.string()));
-}
-
-void check_cell(const Json::Value& cell, const std::string& where) {
-    if (!cell.isObject()) throw InputError(fmt::format("{}: no object; {}", where, kCopyAgain));
-    expect_file_name(get_string(cell, "cell", where), "cell", where);
-    (void)get_string(cell, "method", where);
-    (void)get_string(cell, "scenario", where);
-    (void)get_string(cell, "status", where);
-    const auto expect = [&](const char* key, bool good, const char* what) {
-        expect_field(good, where, key, what);
-    };
-    expect("repetition", cell["repetition"].isInt(), "a whole number");
-    expect("params", cell["params"].isObject(), "an object");
-    expect("reason", cell["reason"].isNull() || cell["reason"].isString(), "text");
-    expect("noise", cell["noise"].isNull() || cell["noise"].isString(), "text or null");
-    const Json::Value& warnings = cell["warnings"];
-    expect("warnings",
-           warnings.isNull() || (warnings.isArray() &&
-                                 std::all_of(warnings.begin(), warnings.end(),
-                                             [](const auto& text) { return text.isString(); })),
-           "a list of texts");
-    for (const char* key : kFigures) {
-        expect(key, is_figure(cell[key]), "a number, \"inf\" or null");
-    }
-    for (const char* key : kSummaries) {
-        expect(key, is_summary(cell[key]), "an object of numbers, or null");
-    }
-    const Json::Value& economy = cell["economy"];
-    expect("economy",
-           economy.isNull() || (economy.isArray() && std::all_of(economy.begin(), economy.end(),
-                                                                 [](const auto& frame) {
-                                                                     return frame.isObject() &&
-                                                                            frame["frame"].isInt();
-                                                                 })),
-           "a list of frames, or null");
 }
 
 const std::vector<double>* FrameTable::find(std::string_view column) const {
@@ -325,14 +255,13 @@ FrameTable parse_frame_table(std::string_view csv, const std::string& where) {
     return table;
 }
 
-void expect_frames(const Json::Value& cell, std::string_view csv, const std::string& where) {
-    const Json::Value& written = cell["frames_checksum"];
-    if (written.isNull()) return;  // of an older version
+void expect_frames(const CellRecord& cell, std::string_view csv, const std::string& where) {
+    const std::string& written = cell.frames_checksum;
+    if (written.empty()) return;  // of an older version
     const std::string found = checksum_of(csv);
     if (written == found) return;
     throw InputError(fmt::format("{}: its checksum is {}, and cells.jsonl says {}; {}", where,
-                                 found, written.isString() ? written.asString() : "no text",
-                                 kCopyAgain));
+                                 found, written, kCopyAgain));
 }
 
 ResultFolder read_result_folder(const fs::path& path) {
@@ -344,14 +273,13 @@ ResultFolder read_result_folder(const fs::path& path) {
     }
     folder.run = read_run(path);
     read_cells(folder);
-    for (const Json::Value& cell : folder.cells) {
-        if (cell["status"].asString() != "ok") continue;
-        const std::string id = cell["cell"].asString();
-        const fs::path file = path / "frames" / (id + ".csv");
+    for (const CellRecord& cell : folder.cells) {
+        if (cell.status != CellStatus::ok) continue;
+        const fs::path file = path / "frames" / (cell.cell + ".csv");
         const std::string csv =
             read_input(file, "cells.jsonl names its cell: copy the folder again, with its frames");
         expect_frames(cell, csv, file.string());
-        folder.frames.emplace(id, parse_frame_table(csv, file.string()));
+        folder.frames.emplace(cell.cell, parse_frame_table(csv, file.string()));
     }
     read_flights(folder);
     read_search(folder);

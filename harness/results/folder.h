@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "results/cell.h"
 #include "results/match.h"
 
 namespace lodbench::results {
@@ -47,7 +48,7 @@ struct ResultFolder {
     std::filesystem::path path;
     std::string name;  ///< the folder's own name
     Json::Value run;   ///< run.json, an object
-    std::vector<Json::Value> cells;
+    std::vector<CellRecord> cells;
     std::map<std::string, FrameTable> frames;     ///< by cell; of the cells that are ok
     std::map<std::string, FlightRecord> flights;  ///< by scenario; of those that have one
     std::optional<MatchRecord> match;             ///< of a folder that `match` wrote
@@ -59,21 +60,14 @@ struct ResultFolder {
 /// flights may be missing.
 [[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& path);
 
-/// Throws InputError unless `name` is nothing but a name: what comes out of a file must not lead
-/// out of the folder. `what` is what it names: "cell", "scenario".
-void expect_file_name(const std::string& name, const char* what, const std::string& where);
-
 /// Throws InputError unless nothing or a plain file lies there: a link leads out of the folder, and
 /// reading a pipe never ends.
 void expect_plain_file(const std::filesystem::path& file);
-
-/// Throws InputError unless `cell`, a line of cells.jsonl, has fields of the right types.
-void check_cell(const Json::Value& cell, const std::string& where);
 
 /// `where` names the file in messages.
 [[nodiscard]] FrameTable parse_frame_table(std::string_view csv, const std::string& where);
 
 /// Throws InputError naming the file unless a cell's frames are those that it was written with.
-void expect_frames(const Json::Value& cell, std::string_view csv, const std::string& where);
+void expect_frames(const CellRecord& cell, std::string_view csv, const std::string& where);
 
 }  // namespace lodbench::results

@@ -137,6 +137,19 @@ std::optional<double> read_number_or_inf(const Json::Value& value) {
     return std::nullopt;
 }
 
+const Json::Value& member_of(const Json::Value& object, const char* key, const char* inner) {
+    const Json::Value& outer = object.isObject() ? object[key] : Json::Value::nullSingleton();
+    if (inner == nullptr) return outer;
+    return outer.isObject() ? outer[inner] : Json::Value::nullSingleton();
+}
+
+std::string value_text(const Json::Value& value) {
+    if (value.isString()) return value.asString();
+    if (value.isBool()) return value.asBool() ? "true" : "false";
+    if (value.isIntegral() && value.isInt64()) return fmt::format("{}", value.asInt64());
+    return value.isNumeric() ? fmt::format("{}", value.asDouble()) : "-";
+}
+
 void expect_field(bool good, const std::string& where, const char* key, const char* what) {
     if (good) return;
     throw InputError(fmt::format("{}: '{}' is not {}; {}", where, key, what, kCopyAgain));
@@ -158,6 +171,16 @@ const Json::Value& get_array(const Json::Value& object, const char* key, const s
     const Json::Value& value = member(object, key, where);
     expect_field(value.isArray(), where, key, "a list");
     return value;
+}
+
+bool is_file_name(const std::string& name) {
+    return !name.empty() && name != "." && name != ".." && name.find('/') == name.npos &&
+           name.find('\0') == name.npos;
+}
+
+void expect_file_name(const std::string& name, const char* what, const std::string& where) {
+    if (is_file_name(name)) return;
+    throw InputError(fmt::format("{}: '{}' is no name of a {}; {}", where, name, what, kCopyAgain));
 }
 
 }  // namespace lodbench::results

@@ -45,6 +45,13 @@ inline constexpr int kSchemaVersion = 1;
 /// The reverse: nothing for anything else.
 [[nodiscard]] std::optional<double> read_number_or_inf(const Json::Value& value);
 
+/// The member `inner` (where not null) of the member `key`; null where either is not there.
+[[nodiscard]] const Json::Value& member_of(const Json::Value& object, const char* key,
+                                           const char* inner = nullptr);
+
+/// As text: "true", "12", "0.5"; "-" for null, lists and objects.
+[[nodiscard]] std::string value_text(const Json::Value& value);
+
 /// The remedy for a file that is damaged.
 inline constexpr const char* kCopyAgain = "the file is damaged: copy the folder again, or run anew";
 
@@ -58,5 +65,11 @@ void expect_field(bool good, const std::string& where, const char* key, const ch
                                 const std::string& where);
 [[nodiscard]] const Json::Value& get_array(const Json::Value& object, const char* key,
                                            const std::string& where);
+
+/// Whether it is nothing but a name, which does not lead out of its folder.
+[[nodiscard]] bool is_file_name(const std::string& name);
+/// Throws InputError unless `name` is nothing but a name: what comes out of a file must not lead
+/// out of the folder. `what` is what it names: "cell", "scenario".
+void expect_file_name(const std::string& name, const char* what, const std::string& where);
 
 }  // namespace lodbench::results

@@ -103,13 +103,14 @@ bool MatchTarget::meets(double measured) const {
     return measured >= value * (1 - tolerance) && measured <= value * (1 + tolerance);
 }
 
-std::optional<double> MatchTarget::measured(const Json::Value& cell) const {
+std::optional<double> MatchTarget::measured(const CellRecord& cell) const {
     switch (quantity) {
         case Quantity::pixel_error: return pixel_error(cell, metric);
-        case Quantity::triangles: return read_number_or_inf(member_of(cell, "triangles", kMean));
+        case Quantity::triangles:
+            return figures::of<&CellRecord::triangles, &CountSummary::mean>(cell);
         case Quantity::frame_ms: break;
     }
-    return read_number_or_inf(member_of(cell, "frame_ms", kMean));
+    return figures::of<&CellRecord::frame_ms, &measure::TimeSummary::mean>(cell);
 }
 
 Json::Value to_json(const MatchRecord& record) {

@@ -24,7 +24,7 @@ struct MatchTarget {
     /// Whether a measured value is within the tolerance.
     [[nodiscard]] bool meets(double measured) const;
     /// The quantity in a cell's record: mean over the flight where there is one value a frame.
-    [[nodiscard]] std::optional<double> measured(const Json::Value& cell) const;
+    [[nodiscard]] std::optional<double> measured(const CellRecord& cell) const;
 };
 
 struct MatchRecord {

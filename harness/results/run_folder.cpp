@@ -208,21 +208,20 @@ void RunFolder::discard() {
     }
 }
 
-std::vector<Json::Value> RunFolder::repair() {
+std::vector<CellRecord> RunFolder::repair() {
     const fs::path file = path_ / "cells.jsonl";
-    std::vector<Json::Value> cells;
+    std::vector<CellRecord> cells;
     std::set<std::string> ids;
     for (const std::string& line : base::read_lines(file, true)) {
         const std::string where = fmt::format("{}:{}", file.string(), cells.size() + 1);
-        Json::Value cell = results::parse_sealed(line, where);
-        const std::string id = results::get_string(cell, "cell", where);
-        if (!ids.insert(id).second) {
-            throw InputError(
-                fmt::format("{}: cell '{}' is there twice; remove one of its lines", where, id));
+        CellRecord cell = read_cell(parse_sealed(line, where), where);
+        if (!ids.insert(cell.cell).second) {
+            throw InputError(fmt::format("{}: cell '{}' is there twice; remove one of its lines",
+                                         where, cell.cell));
         }
-        if (cell.isMember("frames_checksum")) {
-            const fs::path frames = path_ / "frames" / (id + ".csv");
-            results::expect_frames(cell, base::read_text(frames), frames.string());
+        if (!cell.frames_checksum.empty()) {
+            const fs::path frames = path_ / "frames" / (cell.cell + ".csv");
+            expect_frames(cell, base::read_text(frames), frames.string());
         }
         cells.push_back(std::move(cell));
     }
@@ -230,11 +229,11 @@ std::vector<Json::Value> RunFolder::repair() {
     return cells;
 }
 
-void RunFolder::add_cell(const std::string& id, const Json::Value& record, const std::string& csv) {
-    const fs::path frames = path_ / "frames" / (id + ".csv");
+void RunFolder::add_cell(const CellRecord& cell, const std::string& csv) {
+    const fs::path frames = path_ / "frames" / (cell.cell + ".csv");
     base::write_whole(frames, csv);
     try {
-        base::append_line(path_ / "cells.jsonl", results::seal(record));
+        base::append_line(path_ / "cells.jsonl", seal(to_json(cell)));
     } catch (...) {
         std::error_code ignored;
         fs::remove(frames, ignored);

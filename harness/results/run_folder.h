@@ -1,13 +1,12 @@
 #pragma once
 // The folder of one campaign's results, held by one process at a time.
 
-#include <json/value.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/child_process.h"
+#include "results/cell.h"
 
 namespace lodbench::results {
 
@@ -44,13 +43,13 @@ public:
     /// run began in this object: the folder was new or empty.
     void discard();
 
-    /// The objects of cells.jsonl after a repair: a line that a killed writer left unfinished is
+    /// The records of cells.jsonl after a repair: a line that a killed writer left unfinished is
     /// dropped, and so are its temporary files. Throws InputError with file and line for what is no
     /// cell.
-    [[nodiscard]] std::vector<Json::Value> repair();
+    [[nodiscard]] std::vector<CellRecord> repair();
 
     /// The frames' CSV first, then the cell's line: a cell that has a line is whole.
-    void add_cell(const std::string& id, const Json::Value& record, const std::string& csv);
+    void add_cell(const CellRecord& cell, const std::string& csv);
 
 private:
     [[nodiscard]] std::vector<std::filesystem::path> own_files(bool temporary_only) const;

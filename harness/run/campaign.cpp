@@ -12,9 +12,7 @@
 
 #include "api/error.h"
 #include "base/files.h"
-#include "results/cell.h"
 #include "results/folder.h"
-#include "results/frame_columns.h"
 #include "results/json.h"
 #include "results/run_folder.h"
 #include "run/context.h"
@@ -203,23 +201,24 @@ private:
 
     /// Cells of one run compare methods on one terrain: a file that changed between start and
     /// resume, the terrain's or the plugin's, ends the run.
-    void refuse_changed_input(const Json::Value& record) const {
-        const auto compare = [&](const char* with, const char* field, const char* what) {
-            for (const Json::Value& cell : outcome_.cells) {
-                if (cell[with] != record[with] || cell[field].isNull() || record[field].isNull() ||
-                    cell[field] == record[field]) {
+    void refuse_changed_input(const results::CellRecord& record) const {
+        using Text = std::string results::CellRecord::*;
+        const auto compare = [&](Text with, Text checksum, const char* what) {
+            for (const results::CellRecord& cell : outcome_.cells) {
+                if (cell.*with != record.*with || (cell.*checksum).empty() ||
+                    (record.*checksum).empty() || cell.*checksum == record.*checksum) {
                     continue;
                 }
                 throw InputError(
                     fmt::format("{} '{}' has changed since the run began: its checksum was {} in "
                                 "cell {} and is {}; "
                                 "restore the file or begin anew with another --out",
-                                what, record[with].asString(), cell[field].asString(),
-                                cell["cell"].asString(), record[field].asString()));
+                                what, record.*with, cell.*checksum, cell.cell, record.*checksum));
             }
         };
-        compare("scenario", "terrain_checksum", "the terrain of scenario");
-        compare("method", "plugin_checksum", "the plugin of method");
+        using results::CellRecord;
+        compare(&CellRecord::scenario, &CellRecord::terrain_checksum, "the terrain of scenario");
+        compare(&CellRecord::method, &CellRecord::plugin_checksum, "the plugin of method");
     }
 
     void start() {
@@ -284,11 +283,7 @@ private:
         claim_names();
         results::expect_plain_file(folder_.path() / "cells.jsonl");
         outcome_.cells = folder_.repair();
-        for (std::size_t i = 0; i < outcome_.cells.size(); ++i) {
-            const fs::path lines = folder_.path() / "cells.jsonl";
-            results::check_cell(outcome_.cells[i], fmt::format("{}:{}", lines.string(), i + 1));
-            finished_.insert(outcome_.cells[i]["cell"].asString());
-        }
+        for (const results::CellRecord& cell : outcome_.cells) finished_.insert(cell.cell);
     }
 
     /// Cells of one run compare methods under one program.
@@ -381,16 +376,16 @@ private:
                      });
         if (!result.environment_error.empty()) throw EnvironmentError(result.environment_error);
         if (!result.input_error.empty()) throw InputError(result.input_error);
-        Json::Value record =
-            results::cell_record({cell.spec.id, cell.scenario, cell.spec.method, cell.params,
+        results::CellRecord record =
+            results::finish_cell({cell.spec.id, cell.scenario, cell.spec.method, cell.params,
                                   cell.spec.repetition, cell.spec.seed},
                                  result, scenario.measure.budget_ms);
         refuse_changed_input(record);
         if (!result.gl_renderer.empty()) refuse_other_renderer(gl_context(result));
         for (const std::string& warning : result.flight_warnings) warn_once(warning);
         const std::string csv = results::frames_csv(result.frames);
-        record["frames_checksum"] = results::checksum_of(csv);
-        folder_.add_cell(cell.spec.id, record, csv);
+        record.frames_checksum = results::checksum_of(csv);
+        folder_.add_cell(record, csv);
         finished_.insert(cell.spec.id);
         outcome_.cells.push_back(record);
         if (run_["gl"].isNull() && !result.gl_renderer.empty()) {
@@ -465,14 +460,14 @@ private:
 }  // namespace
 
 int CampaignOutcome::exit_status() const {
-    const auto has_status = [this](std::initializer_list<const char*> wanted) {
-        return std::ranges::any_of(cells, [&](const Json::Value& cell) {
-            return std::ranges::any_of(
-                wanted, [&](const char* status) { return cell["status"] == status; });
-        });
+    using results::CellStatus;
+    const auto has = [this](CellStatus status) {
+        return std::ranges::find(cells, status, &results::CellRecord::status) != cells.end();
     };
-    if (has_status({"failed", "crashed", "timeout"})) return kCellFailed;
-    if (!has_status({"ok"})) return kNothingMeasured;
+    if (has(CellStatus::failed) || has(CellStatus::crashed) || has(CellStatus::timeout)) {
+        return kCellFailed;
+    }
+    if (!has(CellStatus::ok)) return kNothingMeasured;
     return error.empty() ? kAllWell : kCellFailed;
 }
 

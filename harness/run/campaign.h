@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "results/cell.h"
 #include "run/plan.h"
 
 namespace lodbench::run {
@@ -27,7 +28,7 @@ public:
     virtual void cell_progress(const PlannedCell& /*cell*/, std::size_t /*index*/,
                                std::size_t /*count*/, double /*fraction*/) {}
     virtual void cell_finished(const PlannedCell& /*cell*/, std::size_t /*index*/,
-                               std::size_t /*count*/, const Json::Value& /*record*/) {}
+                               std::size_t /*count*/, const results::CellRecord& /*record*/) {}
     /// The text of summary.md, asked for at the end; `run` is the object of run.json.
     [[nodiscard]] virtual std::string summary(const CampaignOutcome& /*outcome*/,
                                               const Json::Value& /*run*/) {
@@ -37,7 +38,7 @@ public:
 
 struct CampaignOutcome {
     std::filesystem::path out;
-    std::vector<Json::Value> cells;  ///< all that stand in cells.jsonl
+    std::vector<results::CellRecord> cells;  ///< all that stand in cells.jsonl
     std::vector<std::string> warnings;
     std::uint64_t seed = 1;
     Json::Value run;    ///< the object of run.json

@@ -141,7 +141,7 @@ Json::Value gl_context(const results::CellResult& result) {
     json["version"] = result.gl_version;
     json["device"] = text_or_null(result.device_description);
     json["software"] = result.software;
-    json["timer_verdict"] = text_or_null(result.timer_verdict);
+    json["timer_verdict"] = text_or_null(result.cell.timer_verdict);
     return json;
 }
 

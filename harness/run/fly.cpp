@@ -79,13 +79,13 @@ public:
         signs_.frames_total = replays * (scenario_.warmup_frames + scenario_.frames);
         fly_for_time();
         // The method's own: what measuring needs comes later.
-        result_.peak_rss_bytes = peak_rss_bytes();
-        result_.samples_served = stage_->served().samples_served();
-        result_.tiles_served = stage_->served().tiles_served();
-        result_.terrain_bytes_read = stage_->served().bytes_read();
+        result_.cell.peak_rss_bytes = peak_rss_bytes();
+        result_.cell.samples_served = stage_->served().samples_served();
+        result_.cell.tiles_served = stage_->served().tiles_served();
+        result_.cell.terrain_bytes_read = stage_->served().bytes_read();
         fly_in_lockstep();
         if (measures_realtime()) fly_in_real_time();
-        measurer_->finish(result_);
+        measurer_->finish(result_.cell);
         measurer_->write_picture(shot_path("worst"), spec_.id);
         measurer_.reset();
         stage_->release();
@@ -164,8 +164,8 @@ private:
 
 /// Each warning once: a method that is made anew for another replay does the same again.
 void Flight::warn(std::string words) {
-    if (std::ranges::find(result_.warnings, words) == result_.warnings.end()) {
-        result_.warnings.push_back(std::move(words));
+    if (std::ranges::find(result_.cell.warnings, words) == result_.cell.warnings.end()) {
+        result_.cell.warnings.push_back(std::move(words));
     }
 }
 
@@ -179,9 +179,9 @@ void Flight::open() {
     // Known before an hour's flight, not after.
     if (stored && measures_truth()) terrain::require_room_for_whole(terrain_->info());
     track_.emplace(scenario_, *terrain_);
-    result_.plugin_checksum = plugin_checksum();
-    result_.terrain_name = terrain_->info().name;
-    result_.terrain_checksum = terrain_->info().checksum;
+    result_.cell.plugin_checksum = plugin_checksum();
+    result_.cell.terrain = terrain_->info().name;
+    result_.cell.terrain_checksum = terrain_->info().checksum;
     signs_.enter(Call::start);
     if (spec_.wait_for_debugger) {
         signs_.enter(Call::open_plugin);
@@ -190,9 +190,9 @@ void Flight::open() {
         base::await_debugger();
     }
     make_stage();
-    if (const std::string now = plugin_checksum(); now != result_.plugin_checksum) {
+    if (const std::string now = plugin_checksum(); now != result_.cell.plugin_checksum) {
         // Which of the two was opened nobody knows: the cell has none.
-        const std::string before = std::exchange(result_.plugin_checksum, "");
+        const std::string before = std::exchange(result_.cell.plugin_checksum, "");
         throw MethodFailure(
             fmt::format("plugin {} changed while it was opened: its checksum was {} and is {}",
                         spec_.plugin.string(), before, now));
@@ -204,7 +204,7 @@ void Flight::open() {
     result_.software = info.software;
     result_.device_description = stage_->context().description();
     if (const std::string& bound = stage_->method().claimed_bound; !bound.empty()) {
-        result_.claimed_px = stage_->params().real(bound);
+        result_.cell.claimed_px = stage_->params().real(bound);
     }
     if (scenario_.terrain.out_of_core && (stage_->method().capabilities & kOutOfCore) == 0) {
         throw MethodSkipped(fmt::format(
@@ -212,7 +212,7 @@ void Flight::open() {
             stage_->method().id));
     }
     verdict_ = measure::test_timer(stage_->device());
-    result_.timer_verdict = verdict_.text;
+    result_.cell.timer_verdict = verdict_.text;
 }
 
 /// Of the file as it is now: 16 hex digits. It was there when it was listed.
@@ -243,13 +243,13 @@ void Flight::prepare() {
     const double cpu = process_cpu_seconds();
     stage_->prepare();
     glFinish();
-    result_.samples_prepared = stage_->served().samples_served();
-    result_.prepare_s = wall.seconds();
-    result_.prepare_cpu_s = process_cpu_seconds() - cpu;
+    result_.cell.samples_prepared = stage_->served().samples_served();
+    result_.cell.prepare_s = wall.seconds();
+    result_.cell.prepare_cpu_s = process_cpu_seconds() - cpu;
     const Stopwatch upload;
     stage_->upload();
     glFinish();
-    result_.upload_s = upload.seconds();
+    result_.cell.upload_s = upload.seconds();
     stage_->resize(scenario_.viewport);
 }
 
@@ -294,8 +294,8 @@ void Flight::fly_for_time() {
         }
     }
     timer.finish();
-    result_.warmup_frames = scenario_.warmup_frames;
-    result_.frames_in_flight = timer.frames_in_flight();
+    result_.cell.warmup_frames = scenario_.warmup_frames;
+    result_.cell.frames_in_flight = timer.frames_in_flight();
     for (int frame = 0; frame < scenario_.frames; ++frame) {
         const FrameTimes& times = timer.frames()[std::size_t(frame)];
         results::FrameRecord& record = result_.frames[std::size_t(frame)];
@@ -306,7 +306,7 @@ void Flight::fly_for_time() {
         record.cpu_ms = times.cpu_ms;
         record.gpu_ms = times.gpu_ms;
     }
-    if (!timer.warning().empty()) result_.warnings.push_back(timer.warning());
+    if (!timer.warning().empty()) result_.cell.warnings.push_back(timer.warning());
     stage_->check_state(true);
 }
 
@@ -318,8 +318,8 @@ void Flight::fly_in_lockstep() {
         measures_truth() ? terrain::whole_field(terrain_) : nullptr;
     signs_.enter(Call::none);
     measurer_ = std::make_unique<FrameMeasurer>(
-        *stage_, measures_truth() ? result_.claimed_px : std::nullopt, truth,
-        ViewCache(spec_.views, scenario_.name, result_.terrain_checksum,
+        *stage_, measures_truth() ? result_.cell.claimed_px : std::nullopt, truth,
+        ViewCache(spec_.views, scenario_.name, result_.cell.terrain_checksum,
                   result_.gl_vendor + "\n" + result_.gl_renderer + "\n" + result_.gl_version),
         scenario_.measure.pixels_only ? measure::Extent::pixels : measure::Extent::all);
     warm_up();  // as the timing replay began
@@ -345,12 +345,12 @@ void Flight::fly_in_lockstep() {
         measure_frame(frame);
         if (frame == hashed_frame_) {
             stage_->draw_picture();
-            result_.depth_hash = stage_->depth_hash();
-            if (!is_asynchronous() && result_.depth_hash != timing_hash_) {
+            result_.cell.depth_hash = stage_->depth_hash();
+            if (!is_asynchronous() && result_.cell.depth_hash != timing_hash_) {
                 throw MethodFailure(fmt::format(
                     "plugin {} draws another picture in the timing replay (depth hash {}) than in "
                     "lockstep ({}): what is measured would not be what is timed",
-                    spec_.plugin.filename().string(), timing_hash_, result_.depth_hash));
+                    spec_.plugin.filename().string(), timing_hash_, result_.cell.depth_hash));
             }
         }
         if (std::ranges::find(shots_, frame) != shots_.end()) {
@@ -360,16 +360,16 @@ void Flight::fly_in_lockstep() {
         }
         stage_->resume_background();
     }
-    result_.shots_hash = shots_hash.hex();
+    result_.cell.shots_hash = shots_hash.hex();
     for (const auto& [name, sum] : sums) {
-        result_.counters.emplace_back(name, sum / scenario_.frames);
+        result_.cell.counters.emplace_back(name, sum / scenario_.frames);
     }
     const auto empty = std::ranges::count(result_.frames, 0U, &results::FrameRecord::triangles);
     if (empty > 0) {
-        result_.warnings.push_back(
+        result_.cell.warnings.push_back(
             fmt::format("drew no triangle in {} of {} frames", empty, scenario_.frames));
     }
-    result_.gpu_bytes = stage_->method_gpu_bytes();
+    result_.cell.gpu_bytes = stage_->method_gpu_bytes();
 }
 
 /// Every n-th frame, and for popping the frame after it.
@@ -427,7 +427,7 @@ void Flight::fly_in_real_time() {
     }
     constexpr double kTolerated = 0.05;
     if (late_s > kTolerated * begins_s) {
-        result_.warnings.push_back(fmt::format(
+        result_.cell.warnings.push_back(fmt::format(
             "the real-time replay fell {:.1f} ms behind the timing replay's pace, over {:.1f} ms: "
             "background work had more time than that pace gives it",
             late_s * 1e3, begins_s * 1e3));
@@ -448,14 +448,17 @@ void Flight::shoot(int frame) {
 
 results::CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
     results::CellResult result;
+    result.cell.cell = spec.id;
+    result.cell.method = spec.method;
+    result.cell.scenario = spec.scenario_file.stem().string();
     std::unique_ptr<Flight> flight;
     const auto where = [&] { return flight ? flight->where() : std::string(); };
     // Descriptors, limits and the plugin's own file are the plugin's to spoil; what was asked for
     // had been checked before the plugin was opened.
     const auto blame = [&](const char* words, std::string& else_of) {
         if (flight && flight->plugin_opened()) {
-            result.status = results::CellStatus::failed;
-            result.reason = words + where();
+            result.cell.status = results::CellStatus::failed;
+            result.cell.reason = words + where();
         } else {
             else_of = words;
         }
@@ -463,16 +466,16 @@ results::CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
     try {
         flight = std::make_unique<Flight>(spec, signs, result);
         flight->fly();
-        result.status = results::CellStatus::ok;
-        result.modules = base::loaded_modules();
+        result.cell.status = results::CellStatus::ok;
+        result.cell.modules = base::loaded_modules();
     } catch (const MethodSkipped& skipped) {
-        result.status = results::CellStatus::skipped;
-        result.reason = skipped.what();
+        result.cell.status = results::CellStatus::skipped;
+        result.cell.reason = skipped.what();
     } catch (const TerrainError& error) {
         // Met by the harness: the path follows the ground, or the truth needs the whole. It is this
         // terrain's, and other cells may fly another.
-        result.status = results::CellStatus::failed;
-        result.reason = fmt::format("reading the terrain: {}{}", error.what(), where());
+        result.cell.status = results::CellStatus::failed;
+        result.cell.reason = fmt::format("reading the terrain: {}{}", error.what(), where());
     } catch (const base::DiskFullError& error) {
         result.environment_error = error.what();  // no plugin's to spoil
     } catch (const EnvironmentError& error) {
@@ -480,17 +483,17 @@ results::CellResult fly_cell(const CellSpec& spec, VitalSigns& signs) {
     } catch (const InputError& error) {
         blame(error.what(), result.input_error);
     } catch (const std::bad_alloc&) {
-        result.status = results::CellStatus::failed;
-        result.reason = "memory ran out" + where();
+        result.cell.status = results::CellStatus::failed;
+        result.cell.reason = "memory ran out" + where();
     } catch (const std::exception& error) {
-        result.status = results::CellStatus::failed;
-        result.reason = error.what() + where();
+        result.cell.status = results::CellStatus::failed;
+        result.cell.reason = error.what() + where();
     }
     flight.reset();  // what the method does while it is destroyed is warned of as well
     // A plugin's words may hold anything; a reason is one line.
     std::ranges::replace_if(
-        result.reason, [](unsigned char c) { return c < 0x20; }, ' ');
-    if (result.status != results::CellStatus::ok) result.frames.clear();
+        result.cell.reason, [](unsigned char c) { return c < 0x20; }, ' ');
+    if (result.cell.status != results::CellStatus::ok) forget_measured(result);
     return result;
 }
 

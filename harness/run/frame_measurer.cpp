@@ -8,7 +8,6 @@
 
 #include "picture/png.h"
 #include "picture/truth_picture.h"
-#include "results/truth_record.h"
 
 namespace lodbench::run {
 
@@ -42,8 +41,7 @@ void FrameMeasurer::take(int frame, const results::FrameRecord& record,
     nondegenerate_ = measure::nondegenerate_count(surface);
     frame_ = frame;
     if (!meter_) return;
-    meter_->take(frame, stage_->camera(), std::move(surface),
-                 before == nullptr ? nullptr : &before->truth);
+    meter_->take(frame, stage_->camera(), std::move(surface), before == nullptr ? nullptr : before);
 }
 
 void FrameMeasurer::measure(results::FrameRecord& record) {
@@ -52,7 +50,8 @@ void FrameMeasurer::measure(results::FrameRecord& record) {
     stage_->draw_picture();
     const std::vector<float> depth = stage_->read_depth();
     std::vector<std::uint8_t> drawn = stage_->read_color();
-    record.truth = meter_->measure(depth, std::move(drawn), reference_view());
+    static_cast<measure::FrameTruth&>(record) =
+        meter_->measure(depth, std::move(drawn), reference_view());
 }
 
 measure::ReferenceView FrameMeasurer::reference_view() {
@@ -82,25 +81,25 @@ void FrameMeasurer::measure_realtime(int frame) {
     meter_->measure_realtime(frame, camera, std::move(surface), hits, stage_->read_depth());
 }
 
-void FrameMeasurer::finish(results::CellResult& result) const {
+void FrameMeasurer::finish(results::CellRecord& cell) const {
     if (!meter_) return;
     const measure::TruthSummary summary = meter_->summary();
-    result.truth = results::truth_record(summary);
+    results::add_truth(cell, summary);
     if (summary.walls > 0) {
-        result.warnings.push_back(fmt::format(
+        cell.warnings.push_back(fmt::format(
             "up to {} upright triangles of a frame stand above the surface, where no error is "
             "measured on them: skirts hang down",
             summary.walls));
     }
     if (summary.unjudged > 0) {
-        result.warnings.push_back(
+        cell.warnings.push_back(
             fmt::format("{} of {} measured pixels look from below the surface: whether they show a "
                         "crack cannot "
                         "be told",
                         summary.unjudged, summary.pixels));
     }
     if (summary.undecided > 0) {
-        result.warnings.push_back(fmt::format(
+        cell.warnings.push_back(fmt::format(
             "{} of {} measured pixels show no point of the surface that was drawn, over ground so "
             "steep that their depth cannot tell their error: they are left out of the pixel error",
             summary.undecided, summary.pixels));

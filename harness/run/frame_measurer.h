@@ -40,7 +40,7 @@ public:
     void measure_realtime(int frame);
 
     /// The truth about the flight; nothing without it.
-    void finish(results::CellResult& result) const;
+    void finish(results::CellRecord& cell) const;
     /// The worst frame's picture as PNG; does nothing where no frame was measured.
     void write_picture(const std::filesystem::path& path, const std::string& title) const;
 

@@ -88,7 +88,8 @@ public:
     void cell_progress(const PlannedCell&, std::size_t, std::size_t, double fraction) override {
         search_.flying(place_at(fraction));
     }
-    void cell_finished(const PlannedCell&, std::size_t, std::size_t, const Json::Value&) override {
+    void cell_finished(const PlannedCell&, std::size_t, std::size_t,
+                       const results::CellRecord&) override {
         // Those that a search before this one flew are not among them.
         flown_s_ += std::chrono::duration<double>(Clock::now() - begun_).count();
         ++flown_;
@@ -237,7 +238,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             probe.out = request.out / "search" / fmt::format("{}-{:02}", method.method, number++);
             probe.overrides.repetitions = 1;
             probe.overrides.truth = of_the_truth;
-            probe.overrides.economy.emplace();  // none
+            probe.overrides.economy.emplace();   // none
             probe.overrides.pixels_only = true;  // the error that is to be equal is theirs
             watch.begin_flight();
             const CampaignOutcome flown = [&] {
@@ -250,12 +251,11 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             }();
             ++probes_flown;
             if (!flown.error.empty()) throw EnvironmentError(flown.error);
-            const Json::Value& cell = flown.cells.front();
+            const results::CellRecord& cell = flown.cells.front();
             const auto measured = target.measured(cell);
             std::string failure;
             if (!measured) {
-                failure = cell["reason"].isString() ? cell["reason"].asString()
-                                                    : "the quantity was not measured";
+                failure = cell.reason.empty() ? "the quantity was not measured" : cell.reason;
                 method.failure = failure;
             }
             search.probed(watch.place(), method, {value, measured}, failure);

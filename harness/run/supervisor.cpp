@@ -127,9 +127,9 @@ std::string place(const VitalSigns& signs, const std::string& plugin) {
 
 results::CellResult ended(results::CellStatus status, std::string reason, std::uint64_t peak) {
     results::CellResult result;
-    result.status = status;
-    result.reason = std::move(reason);
-    if (peak > 0) result.peak_rss_bytes = peak;
+    result.cell.status = status;
+    result.cell.reason = std::move(reason);
+    if (peak > 0) result.cell.peak_rss_bytes = peak;
     return result;
 }
 
@@ -144,7 +144,7 @@ results::CellResult result_of(const base::ChildEnding& ending, const std::string
             return ended(results::CellStatus::failed, error.what(), 0);
         }
         if (!ending.well()) {
-            result.warnings.push_back(
+            result.cell.warnings.push_back(
                 fmt::format("after the result was written: {}", ending.words()));
         }
         return result;
@@ -274,12 +274,12 @@ results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
 
     results::CellResult result =
         result_of(child.ending(), base::read_all(result_file), *signs, plugin, log);
-    if (!result.peak_rss_bytes && peak > 0) result.peak_rss_bytes = peak;
+    if (!result.cell.peak_rss_bytes && peak > 0) result.cell.peak_rss_bytes = peak;
     if (std::string words = child.left_behind(); !words.empty()) {
-        result.warnings.push_back(std::move(words));
+        result.cell.warnings.push_back(std::move(words));
     }
     if (const int copies = signs->copies.load(); copies > 0) {
-        result.warnings.push_back(
+        result.cell.warnings.push_back(
             fmt::format("{} cop{} of the process came back from a call (fork) and {} ended", copies,
                         copies == 1 ? "y" : "ies", copies == 1 ? "was" : "were"));
     }

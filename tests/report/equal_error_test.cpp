@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "results/json.h"
 
 namespace lodbench::report {
@@ -14,33 +16,33 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A cell as cells.jsonl has it.
-Json::Value cell(const std::string& method, double frame_ms, double error_px, double honesty = 0) {
-    Json::Value json;
-    json["scenario"] = "alps";
-    json["method"] = method;
-    json["status"] = "ok";
-    json["repetition"] = 0;
-    json["params"] = Json::objectValue;
-    if (method != "whole") json["params"]["tau"] = 2.5;
-    json["frame_ms"]["median"] = frame_ms;
-    json["frame_ms"]["max"] = 2 * frame_ms;
-    json["triangles"]["mean"] = 1000.4;
-    json["pixel_error_px"]["p999"] = error_px;
+results::CellRecord cell(const std::string& method, double frame_ms, double error_px,
+                         double honesty = 0) {
+    results::CellRecord record;
+    record.scenario = "alps";
+    record.method = method;
+    record.status = results::CellStatus::ok;
+    if (method != "whole") record.params.set("tau", 2.5);
+    record.frame_ms.emplace();
+    record.frame_ms->median = frame_ms;
+    record.frame_ms->max = 2 * frame_ms;
+    record.triangles = {1000.4, 1000, 1001};
+    record.pixel_error_px.emplace();
+    record.pixel_error_px->p999 = error_px;
     if (honesty > 0) {
-        json["claimed_px"] = 2.5;
-        json["bound_honesty"] = honesty;
+        record.claimed_px = 2.5;
+        record.bound_honesty = honesty;
     }
-    return json;
+    return record;
 }
 
 class EqualError : public testing::Test {
 protected:
-    std::string text(const std::vector<Json::Value>& cells) {
+    std::string text(const std::vector<results::CellRecord>& cells) {
         return equal_text(flight_, cells, {{"a", "tau"}, {"b", "tau"}, {"c", "tau"}});
     }
     /// The first line below the table.
-    std::string verdict(const std::vector<Json::Value>& cells) {
+    std::string verdict(const std::vector<results::CellRecord>& cells) {
         const std::string all = text(cells);
         const std::size_t begin = all.find("|\n\n") + 3;
         return all.substr(begin, all.find('\n', begin) - begin);
@@ -91,7 +93,7 @@ TEST_F(EqualError, rows_stand_by_rising_time_those_at_another_error_last_and_mar
 }
 
 TEST_F(EqualError, what_is_off_is_said_with_the_reason_that_is_known) {
-    const std::vector<Json::Value> cells = {cell("a", 30, 2), cell("c", 5, 3)};
+    const std::vector<results::CellRecord> cells = {cell("a", 30, 2), cell("c", 5, 3)};
     EXPECT_THAT(text(cells),
                 HasSubstr("- c shows 3 px: the kept value of the knob gives another error here"));
     flight_.off["c"] = "its grid ends there";
@@ -105,8 +107,9 @@ TEST_F(EqualError, what_is_off_is_said_with_the_reason_that_is_known) {
 }
 
 TEST_F(EqualError, an_asynchronous_method_is_off_by_what_it_shows_at_pace_and_said_to_be_late) {
-    Json::Value late = cell("b", 20, 2.1);
-    late["pixel_error_realtime_px"]["p999"] = 4;
+    results::CellRecord late = cell("b", 20, 2.1);
+    late.pixel_error_realtime_px.emplace();
+    late.pixel_error_realtime_px->p999 = 4;
     EXPECT_THAT(text({cell("a", 30, 2), late}),
                 HasSubstr("- b shows 4 px: at this machine's pace its selection comes late; "
                           "caught up, it shows 2.1 px.\n"));
@@ -133,11 +136,11 @@ TEST_F(EqualError, an_error_above_a_claimed_bound_is_marked_and_said) {
 }
 
 TEST_F(EqualError, an_error_that_was_not_measured_or_is_infinite_is_off) {
-    Json::Value none = cell("a", 30, 2);
-    none["pixel_error_px"] = Json::Value::null;
+    results::CellRecord none = cell("a", 30, 2);
+    none.pixel_error_px.reset();
     EXPECT_THAT(text({none}), HasSubstr("- a shows no measured error: "));
-    Json::Value infinite = cell("a", 30, 2);
-    infinite["pixel_error_px"]["p999"] = "inf";
+    results::CellRecord infinite = cell("a", 30, 2);
+    infinite.pixel_error_px->p999 = std::numeric_limits<double>::infinity();
     EXPECT_THAT(text({infinite}), HasSubstr("- a shows inf px: "));
 }
 

@@ -215,29 +215,29 @@ TEST(ReferencePoint, is_a_tenth_beyond_the_worst_that_was_measured) {
     EXPECT_FALSE(reference_point(Points{{1, 0}}).has_value());
 }
 
-Json::Value cell(const std::string& method, double tau, int repetition, const std::string& error,
-                 double frame_ms) {
-    return results::parse_json(
+results::CellRecord cell(const std::string& method, double tau, int repetition,
+                         const std::string& error, double frame_ms) {
+    const Json::Value json = results::parse_json(
         R"({"cell":"x","scenario":"s","method":")" + method + R"(","params":{"tau":)" +
             std::to_string(tau) + R"(},"repetition":)" + std::to_string(repetition) +
             R"(,"status":"ok","pixel_error_px":)" + error + R"(,"frame_ms":{"mean":)" +
             std::to_string(frame_ms) + R"(},"triangles":{"mean":100},"gpu_bytes":1048576,)" +
             R"("prepare_s":null})",
         "a cell");
+    return results::read_cell(json, "a cell");
 }
 
 TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario) {
-    std::vector<Json::Value> cells = {cell("m", 4, 0, R"({"p999":4,"max":"inf"})", 10),
-                                      cell("m", 4, 1, "null", 14), cell("m", 4, 2, "null", 12),
-                                      cell("m", 1, 0, R"({"p999":1,"max":8})", 30),
-                                      cell("n", 1, 0, R"({"p999":5,"max":6})", 20)};
-    cells.back()["status"] = "ok";
-    Json::Value failed = cell("n", 2, 0, "null", 0);
-    failed["status"] = "failed";
-    failed["reason"] = "out of luck";
+    std::vector<results::CellRecord> cells = {
+        cell("m", 4, 0, R"({"p999":4,"max":"inf"})", 10), cell("m", 4, 1, "null", 14),
+        cell("m", 4, 2, "null", 12), cell("m", 1, 0, R"({"p999":1,"max":8})", 30),
+        cell("n", 1, 0, R"({"p999":5,"max":6})", 20)};
+    results::CellRecord failed = cell("n", 2, 0, "null", 0);
+    failed.status = results::CellStatus::failed;
+    failed.reason = "out of luck";
     cells.push_back(failed);
-    Json::Value elsewhere = cell("n", 1, 0, R"({"p999":50,"max":60})", 200);
-    elsewhere["scenario"] = "t";
+    results::CellRecord elsewhere = cell("n", 1, 0, R"({"p999":50,"max":60})", 200);
+    elsewhere.scenario = "t";
     cells.push_back(elsewhere);
     const auto rows = trade_rows(cells, {{"m", "tau"}}, results::ErrorMetric::p999, 1);
     ASSERT_EQ(rows.size(), 5U);
@@ -267,10 +267,11 @@ TEST(TradeRows, take_medians_of_repetitions_and_mark_the_front_within_a_scenario
 }
 
 TEST(TradeRows, an_asynchronous_method_is_judged_by_what_its_pace_showed) {
-    Json::Value one = cell("m", 1, 0, R"({"p999":1})", 10);
-    one["pixel_error_realtime_px"]["p999"] = 3.5;
+    results::CellRecord one = cell("m", 1, 0, R"({"p999":1})", 10);
+    one.pixel_error_realtime_px.emplace();
+    one.pixel_error_realtime_px->p999 = 3.5;
     EXPECT_EQ(results::pixel_error(one, results::ErrorMetric::p999), 3.5);
-    one["pixel_error_realtime_px"] = Json::Value::null;
+    one.pixel_error_realtime_px.reset();
     EXPECT_EQ(results::pixel_error(one, results::ErrorMetric::p999), 1.0);
     EXPECT_EQ(results::pixel_error(one, results::ErrorMetric::rms), std::nullopt);
 }

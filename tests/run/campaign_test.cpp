@@ -55,7 +55,10 @@ TEST(Interleave, is_a_permutation_that_the_seed_decides_and_repetitions_stay_in_
 
 results::CellResult sample_result() {
     results::CellResult result;
-    result.status = results::CellStatus::ok;
+    result.cell.cell = "m__demo__r0";
+    result.cell.method = "m";
+    result.cell.scenario = "demo";
+    result.cell.status = results::CellStatus::ok;
     for (int i = 0; i < 4; ++i) {
         results::FrameRecord frame;
         frame.frame = i;
@@ -63,8 +66,8 @@ results::CellResult sample_result() {
         frame.triangles = std::uint64_t(100 + i);
         result.frames.push_back(frame);
     }
-    result.counters = {{"splits", 2.5}};
-    result.gpu_bytes = 1 << 20;
+    result.cell.counters = {{"splits", 2.5}};
+    result.cell.gpu_bytes = 1 << 20;
     return result;
 }
 
@@ -90,15 +93,15 @@ TEST(CellRecord, damaged_text_is_an_input_error) {
 
 TEST(CellRecord, what_was_not_measured_is_null_never_zero) {
     results::CellResult crashed;
-    crashed.status = results::CellStatus::crashed;
-    crashed.reason = "aborted";
-    const Json::Value json = results::cell_record({}, crashed, 16.67);
+    crashed.cell.status = results::CellStatus::crashed;
+    crashed.cell.reason = "aborted";
+    const Json::Value json = to_json(results::finish_cell({}, crashed, 16.67));
     for (const char* key :
          {"fps", "frame_ms", "gpu_ms", "triangles", "prepare_s", "gpu_bytes", "frames",
           "screen_error_px", "pixel_error_px", "popping_px", "image", "bound_honesty"}) {
         EXPECT_TRUE(json.isMember(key) && json[key].isNull()) << key;
     }
-    const Json::Value good = results::cell_record({}, sample_result(), 16.67);
+    const Json::Value good = to_json(results::finish_cell({}, sample_result(), 16.67));
     EXPECT_DOUBLE_EQ(good["fps"].asDouble(), 1000 / 11.5);
     EXPECT_DOUBLE_EQ(good["frame_ms"]["max"].asDouble(), 13);
     EXPECT_TRUE(good["frame_ms"]["p99"].isNull()) << "4 frames carry no 99th percentile";
@@ -138,18 +141,18 @@ TEST(Results, files_are_written_whole_or_not_at_all) {
 }
 
 TEST(Table, labels_show_the_parameters_that_differ_and_failures_stand_below) {
-    std::vector<Json::Value> records;
+    std::vector<results::CellRecord> records;
     for (const double tau : {1.0, 4.0}) {
         Params params;
         params.set("tau", tau);
         params.set("cull", true);
         const results::CellName name = {"", "demo", "m", params};
-        records.push_back(results::cell_record(name, sample_result(), 16.67));
+        records.push_back(results::finish_cell(name, sample_result(), 16.67));
     }
     results::CellResult crashed;
-    crashed.status = results::CellStatus::crashed;
-    crashed.reason = "aborted";
-    records.push_back(results::cell_record({"", "demo", "bad", {}}, crashed, 16.67));
+    crashed.cell.status = results::CellStatus::crashed;
+    crashed.cell.reason = "aborted";
+    records.push_back(results::finish_cell({"", "demo", "bad", {}}, crashed, 16.67));
     const auto rows = report::table_rows(records, 1);
     ASSERT_EQ(rows.size(), 3U);
     EXPECT_EQ(rows[0].label, "bad");

@@ -17,7 +17,7 @@ using testing::IsEmpty;
 results::CellResult flown(int frames, double wall_ms, double cpu_ms, std::optional<double> gpu_ms,
                           bool software) {
     results::CellResult result;
-    result.status = results::CellStatus::ok;
+    result.cell.status = results::CellStatus::ok;
     result.software = software;
     for (int i = 0; i < frames; ++i) {
         results::FrameRecord& frame = result.frames.emplace_back();
@@ -50,12 +50,12 @@ TEST(Noise, of_a_cell_on_a_gpu_counts_its_time_and_is_untold_where_that_is_unkno
 }
 
 TEST(Noise, of_a_setting_names_the_repetitions) {
-    std::vector<Json::Value> cells;
+    std::vector<results::CellRecord> cells;
     for (int repetition = 0; repetition < 2; ++repetition) {
         const results::CellName name{"id", "scenario", "method", {}, repetition, 1};
-        cells.push_back(cell_record(name, flown(10, 100, repetition == 1 ? 20 : 90, {}, true), 16));
+        cells.push_back(finish_cell(name, flown(10, 100, repetition == 1 ? 20 : 90, {}, true), 16));
     }
-    EXPECT_TRUE(cells[0]["noise"].isNull());
+    EXPECT_EQ(cells[0].noise, "");
     const auto groups = results::group_cells(cells);
     EXPECT_THAT(noise_of(groups.at(0)),
                 ElementsAre(testing::StartsWith("repetition 1: its frames")));

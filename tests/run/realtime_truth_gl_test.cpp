@@ -22,10 +22,10 @@ protected:
         measurer_.measure_realtime(frame);
         stage.resume_background();
     }
-    Json::Value truth() {
-        results::CellResult result;
-        measurer_.finish(result);
-        return result.truth;
+    results::CellRecord truth() {
+        results::CellRecord cell;
+        measurer_.finish(cell);
+        return cell;
     }
 
     std::shared_ptr<const terrain::HeightField> terrain_ = hills(65, 65);
@@ -35,13 +35,12 @@ protected:
 
 TEST_F(RealtimeTruth, is_that_of_the_surface_that_is_drawn) {
     measure(0, 0);  // waits: there is nothing yet that could be drawn
-    EXPECT_LE(truth()["pixel_error_realtime_px"]["max"].asDouble(), measure::kSettledPx);
+    EXPECT_LE(truth().pixel_error_realtime_px->max, measure::kSettledPx);
     measure(1, 40);  // raised by 4 m, and seen from less than 1 km
-    const Json::Value behind = truth();
-    const Json::Value& error = behind["pixel_error_realtime_px"];
-    EXPECT_GT(error["p99"].asDouble(), 1);
-    EXPECT_EQ(error["worst"]["frame"].asInt(), 1);
-    EXPECT_TRUE(behind["pixel_error_px"].isNull()) << "no frame of the lockstep replay";
+    const results::CellRecord behind = truth();
+    EXPECT_GT(behind.pixel_error_realtime_px->p99, 1);
+    EXPECT_EQ(behind.pixel_error_realtime_px->worst->frame, 1);
+    EXPECT_FALSE(behind.pixel_error_px) << "no frame of the lockstep replay";
 }
 
 TEST_F(RealtimeTruth, is_exact_again_where_the_work_is_done) {
@@ -51,7 +50,7 @@ TEST_F(RealtimeTruth, is_exact_again_where_the_work_is_done) {
     flight_.stage().pause_background();
     measurer_.measure_realtime(1);
     flight_.stage().resume_background();
-    EXPECT_LE(truth()["pixel_error_realtime_px"]["max"].asDouble(), measure::kSettledPx);
+    EXPECT_LE(truth().pixel_error_realtime_px->max, measure::kSettledPx);
 }
 
 }  // namespace

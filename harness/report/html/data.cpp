@@ -43,19 +43,19 @@ ReportData arrange(const std::vector<results::ResultFolder>& folders) {
     return data;
 }
 
-std::optional<double> figure(const results::CellGroup& group, const char* key, const char* inner) {
-    return measure::median(results::numbers_of(group.good, key, inner));
+std::optional<double> figure(const results::CellGroup& group, const results::CellFigure& figure) {
+    return measure::median(results::numbers_of(group.good, figure));
 }
 
-bool any_has(const ResultSet& set, const char* key, const char* inner) {
+bool any_has(const ResultSet& set, const results::CellFigure& figure) {
     return std::ranges::any_of(set.groups, [&](const results::CellGroup& group) {
-        return figure(group, key, inner).has_value();
+        return html::figure(group, figure).has_value();
     });
 }
 
 std::optional<measure::RunInterval> interval(const results::CellGroup& group, std::uint64_t seed,
-                                             const char* key, const char* inner) {
-    const std::vector<double> values = results::numbers_of(group.good, key, inner);
+                                             const results::CellFigure& figure) {
+    const std::vector<double> values = results::numbers_of(group.good, figure);
     if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
         return std::nullopt;
     }
@@ -66,8 +66,8 @@ std::vector<double> frame_column(const ResultSet& set, const results::CellGroup&
                                  const char* column) {
     std::vector<const std::vector<double>*> runs;
     std::size_t frames = 0;
-    for (const Json::Value* cell : group.good) {
-        const results::FrameTable& table = set.folder->frames.at((*cell)["cell"].asString());
+    for (const results::CellRecord* cell : group.good) {
+        const results::FrameTable& table = set.folder->frames.at(cell->cell);
         if (const std::vector<double>* values = table.find(column)) {
             runs.push_back(values);
             frames = std::max(frames, values->size());

@@ -47,14 +47,14 @@ struct ReportData {
 [[nodiscard]] ReportData arrange(const std::vector<results::ResultFolder>& folders);
 
 /// A figure of a group: the median over its repetitions, as in summary.md.
-[[nodiscard]] std::optional<double> figure(const results::CellGroup& group, const char* key,
-                                           const char* inner = nullptr);
+[[nodiscard]] std::optional<double> figure(const results::CellGroup& group,
+                                           const results::CellFigure& figure);
 /// Whether a setting of the set has it.
-[[nodiscard]] bool any_has(const ResultSet& set, const char* key, const char* inner = nullptr);
+[[nodiscard]] bool any_has(const ResultSet& set, const results::CellFigure& figure);
 /// Over the repetitions; nothing where one is not finite.
 [[nodiscard]] std::optional<measure::RunInterval> interval(const results::CellGroup& group,
-                                                           std::uint64_t seed, const char* key,
-                                                           const char* inner = nullptr);
+                                                           std::uint64_t seed,
+                                                           const results::CellFigure& figure);
 
 /// A column of the frames, per frame the median over the repetitions; NaN where it is absent. Empty
 /// where no repetition has it.

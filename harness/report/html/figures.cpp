@@ -8,30 +8,8 @@
 
 namespace lodbench::report::html {
 
-std::string FigureColumn::field() const {
-    return inner == nullptr ? key : fmt::format("{}.{}", key, inner);
-}
-
-bool FigureColumn::is_greatest() const {
-    const std::string name = field();
+bool is_greatest(const std::string& name) {
     return name.ends_with("_ms.max") || name == "peak_rss_bytes";
-}
-
-void add_columns(Table& table, std::span<const FigureColumn> columns) {
-    for (const FigureColumn& column : columns) {
-        table.columns.push_back({column.title, column.field(), true, column.explanation});
-    }
-}
-
-void add_fields(std::vector<Field>& row, std::span<const FigureColumn> columns,
-                const std::vector<const Json::Value*>& objects) {
-    for (const FigureColumn& column : columns) {
-        const std::vector<double> values = results::numbers_of(objects, column.key, column.inner);
-        const auto value = values.empty()         ? std::nullopt
-                           : column.is_greatest() ? std::optional(*std::ranges::max_element(values))
-                                                  : measure::median(values);
-        row.push_back(number_field(value, column.digits, column.unit));
-    }
 }
 
 Plot bars_of(const ReportData& data, const ResultSet& set, const std::string& id,

@@ -1,8 +1,8 @@
 #pragma once
-// Columns of figures: what of cells.jsonl stands in them, and how it is read.
+// Columns of figures: what of a record stands in them, and how it is shown.
 
-#include <json/value.h>
-
+#include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,25 +13,42 @@
 
 namespace lodbench::report::html {
 
-/// A figure of an object: its member `key`, or of that the member `inner`.
-struct FigureColumn {
+/// A figure of a record, and how it is shown.
+template <typename Record>
+struct ColumnOf {
     const char* title;
-    const char* key;
-    const char* inner = nullptr;
+    results::Figure<Record> figure;
     int digits = 3;
     double unit = 1;  ///< shown is the figure over it
     const char* explanation = "";
-    /// "frame_ms.median"
-    [[nodiscard]] std::string field() const;
-    /// Whether it is the greatest over the repetitions instead of the median, in every table: the
-    /// slowest frame and the most memory that ever were.
-    [[nodiscard]] bool is_greatest() const;
 };
+using FigureColumn = ColumnOf<results::CellRecord>;
 
-void add_columns(Table& table, std::span<const FigureColumn> columns);
-/// A field for each column, over `objects`: the repetitions of a cell, or parts of them.
-void add_fields(std::vector<Field>& row, std::span<const FigureColumn> columns,
-                const std::vector<const Json::Value*>& objects);
+/// Whether of a figure of this name the greatest over the repetitions is told instead of the
+/// median, in every table: the slowest frame and the most memory that ever were.
+[[nodiscard]] bool is_greatest(const std::string& name);
+
+template <typename Columns>
+void add_columns(Table& table, const Columns& columns) {
+    for (const auto& column : columns) {
+        table.columns.push_back({column.title, column.figure.name(), true, column.explanation});
+    }
+}
+
+/// A field for each column, over `records`: the repetitions of a cell, or parts of them.
+template <typename Columns, typename Record>
+void add_fields(std::vector<Field>& row, const Columns& columns,
+                const std::vector<const Record*>& records) {
+    for (const auto& column : columns) {
+        const std::vector<double> values = results::numbers_of(records, column.figure);
+        const auto value = values.empty() ? std::nullopt
+                           : is_greatest(column.figure.name())
+                               ? std::optional(*std::ranges::max_element(values))
+                               : measure::median(values);
+        row.push_back(number_field(value, column.digits, column.unit));
+    }
+}
+
 /// A bar plot, still without its series, of the settings `chosen` from the set.
 [[nodiscard]] Plot bars_of(const ReportData& data, const ResultSet& set, const std::string& id,
                            const std::string& title, const std::string& x_title,

@@ -12,6 +12,8 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
 std::string definition(const char* term, const Json::Value& value) {
@@ -30,14 +32,10 @@ std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
         if (noise.isString()) texts.push_back("noise: " + noise.asString());
     }
     std::map<std::string, std::vector<std::string>> cells;
-    for (const Json::Value& cell : folder.cells) {
-        if (cell["noise"].isString()) {
-            texts.push_back(
-                fmt::format("noise: {}: {}", cell["cell"].asString(), cell["noise"].asString()));
-        }
-        for (const Json::Value& warning : cell["warnings"]) {
-            cells[warning.asString()].push_back(cell["cell"].asString());
-        }
+    for (const results::CellRecord& cell : folder.cells) {
+        if (!cell.noise.empty())
+            texts.push_back(fmt::format("noise: {}: {}", cell.cell, cell.noise));
+        for (const std::string& warning : cell.warnings) cells[warning].push_back(cell.cell);
     }
     for (const auto& [warning, names] : cells) {
         if (std::ranges::find(texts, warning) != texts.end()) continue;
@@ -91,24 +89,24 @@ std::string machine_html(const results::ResultFolder& folder) {
 
 /// The numbers of a cell that are a number each, in one row.
 constexpr FigureColumn kCellColumns[] = {
-    {"frames", "frames", nullptr, 0},
-    {"fps", "fps", nullptr, 1},
-    {"mean, ms", "frame_ms", "mean", 3},
-    {"median, ms", "frame_ms", "median", 3},
-    {"P90, ms", "frame_ms", "p90", 3},
-    {"P99, ms", "frame_ms", "p99", 3},
-    {"max, ms", "frame_ms", "max", 3},
-    {"triangles", "triangles", "mean", 0},
-    {"prepare, s", "prepare_s", nullptr, 3},
-    {"GPU, bytes", "gpu_bytes", nullptr, 0},
-    {"RSS, bytes", "peak_rss_bytes", nullptr, 0},
-    {"screen max, px", "screen_error_px", "max", 3},
-    {"pixel max, px", "pixel_error_px", "max", 3},
-    {"pixel P99.9, px", "pixel_error_px", "p999", 3},
-    {"at pace P99.9, px", "pixel_error_realtime_px", "p999", 3},
-    {"cracks, px", "crack_pixels", "total", 0},
-    {"popping P99.9, px", "popping_px", "p999", 3},
-    {"honesty", "bound_honesty", nullptr, 3},
+    {"frames", of<&Cell::frames>, 0},
+    {"fps", of<&Cell::fps>, 1},
+    {"mean, ms", of<&Cell::frame_ms, &TimeSummary::mean>, 3},
+    {"median, ms", of<&Cell::frame_ms, &TimeSummary::median>, 3},
+    {"P90, ms", of<&Cell::frame_ms, &TimeSummary::p90>, 3},
+    {"P99, ms", of<&Cell::frame_ms, &TimeSummary::p99>, 3},
+    {"max, ms", of<&Cell::frame_ms, &TimeSummary::max>, 3},
+    {"triangles", of<&Cell::triangles, &CountSummary::mean>, 0},
+    {"prepare, s", of<&Cell::prepare_s>, 3},
+    {"GPU, bytes", of<&Cell::gpu_bytes>, 0},
+    {"RSS, bytes", of<&Cell::peak_rss_bytes>, 0},
+    {"screen max, px", of<&Cell::screen_error_px, &ErrorFigures::max>, 3},
+    {"pixel max, px", of<&Cell::pixel_error_px, &ErrorFigures::max>, 3},
+    {"pixel P99.9, px", of<&Cell::pixel_error_px, &ErrorFigures::p999>, 3},
+    {"at pace P99.9, px", of<&Cell::pixel_error_realtime_px, &ErrorFigures::p999>, 3},
+    {"cracks, px", of<&Cell::crack_pixels, &TotalAndMax::total>, 0},
+    {"popping P99.9, px", of<&Cell::popping_px, &PoppingFigures::p999>, 3},
+    {"honesty", of<&Cell::bound_honesty>, 3},
 };
 
 }  // namespace
@@ -177,19 +175,17 @@ void add_cells(Page& page, const ReportData& data) {
                          {"repetition", "repetition"},
                          {"status", "status", false}};
         add_columns(table, kCellColumns);
-        for (const Json::Value& cell : folder.cells) {
+        for (const results::CellRecord& cell : folder.cells) {
             std::string params;
-            const Json::Value& values = cell["params"];
-            for (auto param = values.begin(); param != values.end(); ++param) {
-                params += fmt::format("{}{}={}", params.empty() ? "" : " ", param.name(),
-                                      results::value_text(*param));
+            for (const auto& [name, value] : cell.params.values()) {
+                params += fmt::format("{}{}={}", params.empty() ? "" : " ", name,
+                                      results::value_text(value));
             }
             table.settings.push_back(setting_of(cell));
             std::vector<Field>& row = table.rows.emplace_back();
-            row = {text_field(cell["cell"].asString()), text_field(cell["scenario"].asString()),
-                   text_field(params), number_field(cell["repetition"].asInt(), 0),
-                   text_field(cell["status"].asString())};
-            add_fields(row, kCellColumns, {&cell});
+            row = {text_field(cell.cell), text_field(cell.scenario), text_field(params),
+                   number_field(cell.repetition, 0), text_field(name_of(cell.status))};
+            add_fields(row, kCellColumns, std::vector{&cell});
         }
         page.open_details(fmt::format("{} cells of {}", folder.cells.size(), folder.name));
         page.table(table, table.rows.size());

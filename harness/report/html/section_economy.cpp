@@ -12,44 +12,55 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
+using results::EconomyFrame, results::FewestFigures;
+using FrameColumn = ColumnOf<EconomyFrame>;
+
+template <auto... Members>
+constexpr results::Figure<EconomyFrame> in = results::figure<EconomyFrame, Members...>();
+
 constexpr FigureColumn kDemands[] = {
-    {"screen error, px", "screen_error_px", "max_covered", 3, 1,
+    {"screen error, px", of<&Cell::screen_error_px, &ErrorFigures::max_covered>, 3, 1,
      "greatest over the samples in view that some triangle covers"},
-    {"samples prepared", "samples_prepared", nullptr, 0, 1,
+    {"samples prepared", of<&Cell::samples_prepared>, 0, 1,
      "height samples asked for until preparing had ended"},
-    {"samples served", "samples_served", nullptr, 0, 1,
+    {"samples served", of<&Cell::samples_served>, 0, 1,
      "height samples asked for until the timing replay had ended, those for preparing included"},
-    {"tiles served", "tiles_served", nullptr, 0, 1, "tiles of which they came"},
-    {"read, MiB", "terrain_bytes_read", nullptr, 1, results::kMebibyte,
+    {"tiles served", of<&Cell::tiles_served>, 0, 1, "tiles of which they came"},
+    {"read, MiB", of<&Cell::terrain_bytes_read>, 1, results::kMebibyte,
      "from the terrain's file; 0 for a terrain in memory"},
-    {"GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte, "allocated on the GPU"},
+    {"GPU, MiB", of<&Cell::gpu_bytes>, 1, results::kMebibyte, "allocated on the GPU"},
 };
 
-constexpr FigureColumn kFrameFigures[] = {
-    {"triangles", "triangles", nullptr, 0, 1, "drawn, those with an area"},
-    {"full grid", "full_triangles", nullptr, 0, 1, "triangles of every sample in view"},
-    {"P99.9, px", "p999", "target_px", 3, 1, "screen error of the frame"},
-    {"would do", "p999", "minimal_triangles", 0, 1, "triangles, at the same P99.9"},
-    {"its P99.9, px", "p999", "greedy_px", 3, 1, "measured of the triangles that would do"},
-    {"ratio", "p999", "ratio", 2, 1, "triangles / would do"},
-    {"max, px", "max", "target_px", 3, 1, "greatest screen error of the frame"},
-    {"would do, max", "max", "minimal_triangles", 0, 1, "triangles, at the same greatest error"},
-    {"its max, px", "max", "greedy_px", 3, 1, "measured of the triangles that would do, max"},
-    {"ratio, max", "max", "ratio", 2, 1, "triangles / would do, max"},
+constexpr FrameColumn kFrameFigures[] = {
+    {"triangles", in<&EconomyFrame::triangles>, 0, 1, "drawn, those with an area"},
+    {"full grid", in<&EconomyFrame::full_triangles>, 0, 1, "triangles of every sample in view"},
+    {"P99.9, px", in<&EconomyFrame::p999, &FewestFigures::target_px>, 3, 1,
+     "screen error of the frame"},
+    {"would do", in<&EconomyFrame::p999, &FewestFigures::minimal_triangles>, 0, 1,
+     "triangles, at the same P99.9"},
+    {"its P99.9, px", in<&EconomyFrame::p999, &FewestFigures::greedy_px>, 3, 1,
+     "measured of the triangles that would do"},
+    {"ratio", in<&EconomyFrame::p999, &FewestFigures::ratio>, 2, 1, "triangles / would do"},
+    {"max, px", in<&EconomyFrame::max, &FewestFigures::target_px>, 3, 1,
+     "greatest screen error of the frame"},
+    {"would do, max", in<&EconomyFrame::max, &FewestFigures::minimal_triangles>, 0, 1,
+     "triangles, at the same greatest error"},
+    {"its max, px", in<&EconomyFrame::max, &FewestFigures::greedy_px>, 3, 1,
+     "measured of the triangles that would do, max"},
+    {"ratio, max", in<&EconomyFrame::max, &FewestFigures::ratio>, 2, 1,
+     "triangles / would do, max"},
 };
 
-/// By frame, the objects of the repetitions that compared it.
-std::map<int, std::vector<const Json::Value*>> compared_frames(const results::CellGroup& group) {
-    std::map<int, std::vector<const Json::Value*>> frames;
-    for (const Json::Value* cell : group.good) {
-        const Json::Value& economy = results::member_of(*cell, "economy");
-        if (!economy.isArray()) continue;
-        for (const Json::Value& object : economy) {
-            const Json::Value& frame = results::member_of(object, "frame");
-            if (frame.isInt()) frames[frame.asInt()].push_back(&object);
-        }
+/// By frame, those of the repetitions that compared it.
+std::map<int, std::vector<const EconomyFrame*>> compared_frames(const results::CellGroup& group) {
+    std::map<int, std::vector<const EconomyFrame*>> frames;
+    for (const results::CellRecord* cell : group.good) {
+        if (!cell->economy) continue;
+        for (const EconomyFrame& frame : *cell->economy) frames[frame.frame].push_back(&frame);
     }
     return frames;
 }
@@ -63,8 +74,8 @@ Plot demand_plot(const ReportData& data, const ResultSet& set) {
     plot.can_be_logarithmic = plot.logarithmic = true;
     std::map<std::string, Series> by_method;
     for (const results::CellGroup& group : set.groups) {
-        const auto error = figure(group, "screen_error_px", "max_covered");
-        const auto samples = figure(group, "samples_served");
+        const auto error = figure(group, of<&Cell::screen_error_px, &ErrorFigures::max_covered>);
+        const auto samples = figure(group, of<&Cell::samples_served>);
         if (!error || !samples) continue;
         Series& series = by_method[group.method];
         series.name = series.toggle = group.method;
@@ -125,8 +136,9 @@ Plot ratio_plot(const ReportData& data, const ResultSet& set) {
     Series series{"ratio"};
     for (std::size_t c = 0; c < chosen.size(); ++c) {
         std::vector<double> ratios;
-        for (const auto& [frame, objects] : compared_frames(set.groups[chosen[c]])) {
-            const auto ratio = measure::median(results::numbers_of(objects, "p999", "ratio"));
+        for (const auto& [frame, same] : compared_frames(set.groups[chosen[c]])) {
+            const auto ratio = measure::median(
+                results::numbers_of(same, in<&EconomyFrame::p999, &FewestFigures::ratio>));
             if (ratio) ratios.push_back(*ratio);
         }
         if (ratios.empty()) continue;
@@ -148,12 +160,12 @@ void add_compared_frames(Page& page, const ReportData& data, const ResultSet& se
     table.columns.push_back({"frame", "frame"});
     add_columns(table, kFrameFigures);
     for (const results::CellGroup& group : set.groups) {
-        for (const auto& [frame, objects] : compared_frames(group)) {
+        for (const auto& [frame, same] : compared_frames(group)) {
             std::vector<Field>& row = table.rows.emplace_back();
             row.push_back(text_field(group.label));
             table.settings.push_back(setting_of(*group.cells.front()));
             row.push_back(number_field(frame, 0));
-            add_fields(row, kFrameFigures, objects);
+            add_fields(row, kFrameFigures, same);
         }
     }
     if (table.rows.empty()) {

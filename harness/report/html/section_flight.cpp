@@ -12,6 +12,8 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
 Plot curve_plot(const ReportData& data, const ResultSet& set, const char* column, const char* title,
@@ -119,16 +121,16 @@ std::string worst_svg(const ReportData& data, const ResultSet& set, const MapFra
     std::string svg;
     for (const std::size_t i : choose_groups(set, kMostCurves)) {
         const results::CellGroup& group = set.groups[i];
-        for (const Json::Value* cell : group.good) {
-            const Json::Value& frame =
-                results::member_of(results::member_of(*cell, "pixel_error_px", "worst"), "frame");
-            if (!frame.isUInt64() || frame.asUInt64() >= set.flight->positions.size()) continue;
-            const glm::dvec2 at = map.place(set.flight->positions[frame.asUInt64()]);
+        for (const results::CellRecord* cell : group.good) {
+            if (!cell->pixel_error_px || !cell->pixel_error_px->worst) continue;
+            const auto frame = std::size_t(cell->pixel_error_px->worst->frame);
+            if (frame >= set.flight->positions.size()) continue;
+            const glm::dvec2 at = map.place(set.flight->positions[frame]);
             svg += fmt::format(
                 "<g class=\"{}\"><path class=\"worst\" d=\"M{:.1f} {:.1f}m0 {}l5 8h-10z\">"
                 "<title>worst pixel of {}: frame {}</title></path></g>\n",
                 color_class(data.color_of(group)), at.x, at.y, -16 - 10 * int(i % 4),
-                escape(group.label), frame.asUInt64());
+                escape(group.label), frame);
         }
     }
     return svg;
@@ -150,7 +152,7 @@ void add_curves(Page& page, const ReportData& data, const ResultSet& set) {
         return;
     }
     page.paragraph(fmt::format("Of each frame the median over the repetitions.{}",
-                               any_has(set, "truth_frames")
+                               any_has(set, of<&Cell::truth_frames>)
                                    ? " Error and popping are measured at every n-th frame; a "
                                      "method without popping there stands still but for the camera."
                                    : ""),
@@ -205,7 +207,8 @@ void add_map(Page& page, const ReportData& data, const ResultSet& set) {
         "frame; square: last; strokes: where the camera looks{}.</figcaption></figure>\n",
         flight->positions.size(), flight->rows, flight->columns, flight->spacing.x,
         flight->spacing.y, flight->min_height, flight->max_height,
-        any_has(set, "truth_frames") ? "; triangles: where each method's worst pixel was" : ""));
+        any_has(set, of<&Cell::truth_frames>) ? "; triangles: where each method's worst pixel was"
+                                              : ""));
 }
 
 }  // namespace lodbench::report::html

@@ -11,12 +11,15 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
-constexpr FigureColumn kCosts[] = {{"median frame, ms", "frame_ms", "median"},
-                                   {"triangles", "triangles", "mean", 0, 1, "mean per frame"},
-                                   {"GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte},
-                                   {"preprocessing, s", "prepare_s"}};
+constexpr FigureColumn kCosts[] = {
+    {"median frame, ms", of<&Cell::frame_ms, &TimeSummary::median>},
+    {"triangles", of<&Cell::triangles, &CountSummary::mean>, 0, 1, "mean per frame"},
+    {"GPU, MiB", of<&Cell::gpu_bytes>, 1, results::kMebibyte},
+    {"preprocessing, s", of<&Cell::prepare_s>}};
 
 std::string quantity_title(const results::MatchTarget& target) {
     switch (target.quantity) {
@@ -73,7 +76,7 @@ Table cost_table(const ResultSet& set, const results::MatchTarget& target) {
     add_columns(table, kCosts);
     for (const results::CellGroup& group : set.groups) {
         std::vector<double> measured;
-        for (const Json::Value* cell : group.good) {
+        for (const results::CellRecord* cell : group.good) {
             if (const auto value = target.measured(*cell)) measured.push_back(*value);
         }
         std::vector<Field>& row = table.rows.emplace_back();

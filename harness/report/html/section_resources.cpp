@@ -8,15 +8,18 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
 constexpr FigureColumn kResources[] = {
-    {"preprocessing, s", "prepare_s"},
-    {"CPU time, s", "prepare_cpu_s"},
-    {"start-up, s", "upload_s"},
-    {"allocated on the GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte},
-    {"peak resident size, MiB", "peak_rss_bytes", nullptr, 1, results::kMebibyte},
-    {"uploaded a frame, MiB", "uploaded_bytes", "mean", 3, results::kMebibyte},
+    {"preprocessing, s", of<&Cell::prepare_s>},
+    {"CPU time, s", of<&Cell::prepare_cpu_s>},
+    {"start-up, s", of<&Cell::upload_s>},
+    {"allocated on the GPU, MiB", of<&Cell::gpu_bytes>, 1, results::kMebibyte},
+    {"peak resident size, MiB", of<&Cell::peak_rss_bytes>, 1, results::kMebibyte},
+    {"uploaded a frame, MiB", of<&Cell::uploaded_bytes, &CountSummary::mean>, 3,
+     results::kMebibyte},
 };
 
 /// Of them, those that are plotted.
@@ -32,10 +35,10 @@ constexpr ResourceBars kBars[] = {{"Preprocessing", &kResources[0]},
 Plot resource_plot(const ReportData& data, const ResultSet& set, const char* title,
                    const FigureColumn& resource) {
     const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
-    Plot plot = bars_of(data, set, resource.key, title, resource.title, chosen);
+    Plot plot = bars_of(data, set, resource.figure.outer, title, resource.title, chosen);
     Series series{title};
     for (std::size_t c = 0; c < chosen.size(); ++c) {
-        const auto runs = interval(set.groups[chosen[c]], set.seed, resource.key, resource.inner);
+        const auto runs = interval(set.groups[chosen[c]], set.seed, resource.figure);
         if (!runs) continue;
         series.marks.push_back({runs->centre / resource.unit, double(c), runs->low / resource.unit,
                                 runs->high / resource.unit});

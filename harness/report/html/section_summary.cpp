@@ -12,27 +12,31 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
 constexpr FigureColumn kFigures[] = {
-    {"median, ms", "frame_ms", "median", 3, 1, "median frame time"},
-    {"P90, ms", "frame_ms", "p90", 3, 1, "nine frames in ten are faster"},
-    {"max, ms", "frame_ms", "max", 3, 1, "the slowest frame of all repetitions"},
-    {"triangles", "triangles", "mean", 0, 1, "mean per frame, as the GPU was asked to draw"},
-    {"P99.9 error, px", "pixel_error_px", "p999", 3, 1,
+    {"median, ms", of<&Cell::frame_ms, &TimeSummary::median>, 3, 1, "median frame time"},
+    {"P90, ms", of<&Cell::frame_ms, &TimeSummary::p90>, 3, 1, "nine frames in ten are faster"},
+    {"max, ms", of<&Cell::frame_ms, &TimeSummary::max>, 3, 1,
+     "the slowest frame of all repetitions"},
+    {"triangles", of<&Cell::triangles, &CountSummary::mean>, 0, 1,
+     "mean per frame, as the GPU was asked to draw"},
+    {"P99.9 error, px", of<&Cell::pixel_error_px, &ErrorFigures::p999>, 3, 1,
      "of a thousand pixels all but one are nearer to the truth"},
-    {"at pace, px", "pixel_error_realtime_px", "p999", 3, 1,
+    {"at pace, px", of<&Cell::pixel_error_realtime_px, &ErrorFigures::p999>, 3, 1,
      "the same in the real-time replay: what the frame times showed; asynchronous methods only"},
-    {"max error, px", "pixel_error_px", "max", 2, 1, "of the worst pixel"},
-    {"cracks, px", "crack_pixels", "total", 0, 1,
+    {"max error, px", of<&Cell::pixel_error_px, &ErrorFigures::max>, 2, 1, "of the worst pixel"},
+    {"cracks, px", of<&Cell::crack_pixels, &TotalAndMax::total>, 0, 1,
      "pixels that show what lies behind the surface, over all measured frames"},
-    {"popping P99.9, px", "popping_px", "p999", 3, 1,
+    {"popping P99.9, px", of<&Cell::popping_px, &PoppingFigures::p999>, 3, 1,
      "how far drawn points jump on screen from a frame to the next, the camera's motion apart"},
-    {"honesty", "bound_honesty", nullptr, 3, 1,
+    {"honesty", of<&Cell::bound_honesty>, 3, 1,
      "greatest screen error / claimed bound: above 1 the claim does not hold"},
-    {"prepare, s", "prepare_s", nullptr, 3, 1, "preprocessing, wall time"},
-    {"GPU, MiB", "gpu_bytes", nullptr, 1, results::kMebibyte, "allocated on the GPU"},
-    {"RSS, MiB", "peak_rss_bytes", nullptr, 0, results::kMebibyte,
+    {"prepare, s", of<&Cell::prepare_s>, 3, 1, "preprocessing, wall time"},
+    {"GPU, MiB", of<&Cell::gpu_bytes>, 1, results::kMebibyte, "allocated on the GPU"},
+    {"RSS, MiB", of<&Cell::peak_rss_bytes>, 0, results::kMebibyte,
      "greatest resident memory of the method's process"},
 };
 
@@ -48,9 +52,8 @@ std::set<std::size_t> fastest_for_their_error(const ResultSet& set) {
 
 /// In any scenario: all tables of one kind have the same columns.
 bool any_has(const ReportData& data, const FigureColumn& column) {
-    return std::ranges::any_of(data.sets, [&](const ResultSet& set) {
-        return html::any_has(set, column.key, column.inner);
-    });
+    return std::ranges::any_of(
+        data.sets, [&](const ResultSet& set) { return html::any_has(set, column.figure); });
 }
 
 }  // namespace
@@ -78,7 +81,7 @@ void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
     std::vector<FigureColumn> figures;
     for (const FigureColumn& column : kFigures) {
         // A column for asynchronous methods alone.
-        const bool realtime = std::string_view(column.key) == "pixel_error_realtime_px";
+        const bool realtime = column.figure.is_within("pixel_error_realtime_px");
         if (!realtime || any_has(data, column)) figures.push_back(column);
     }
     add_columns(table, figures);
@@ -92,8 +95,8 @@ void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
         std::vector<Field>& row = table.rows.emplace_back();
         row.push_back(text_field(group.label));
         table.settings.push_back(setting_of(*group.cells.front()));
-        const auto fps = interval(group, set.seed, "fps");
-        row.push_back(number_field(figure(group, "fps"), 1));
+        const auto fps = interval(group, set.seed, of<&Cell::fps>);
+        row.push_back(number_field(figure(group, of<&Cell::fps>), 1));
         row.push_back(fps && group.good.size() > 1
                           ? text_field(fmt::format("{:.1f} to {:.1f}", fps->low, fps->high))
                           : Field{"-", ""});
@@ -120,13 +123,11 @@ void add_failures(Page& page, const ResultSet& set) {
     table.columns.push_back({"status", "status", false});
     table.columns.push_back({"reason", "reason", false});
     for (const results::CellGroup& group : set.groups) {
-        for (const Json::Value* cell : group.cells) {
-            if ((*cell)["status"].asString() == "ok") continue;
+        for (const results::CellRecord* cell : group.cells) {
+            if (cell->status == results::CellStatus::ok) continue;
             table.settings.push_back(setting_of(*cell));
-            table.rows.push_back({text_field(group.label),
-                                  number_field((*cell)["repetition"].asInt(), 0),
-                                  text_field((*cell)["status"].asString()),
-                                  text_field((*cell)["reason"].asString())});
+            table.rows.push_back({text_field(group.label), number_field(cell->repetition, 0),
+                                  text_field(name_of(cell->status)), text_field(cell->reason)});
         }
     }
     if (table.rows.empty()) return;

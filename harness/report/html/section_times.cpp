@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <iterator>
 
 #include "report/html/figures.h"
 #include "report/html/sections.h"
@@ -10,27 +10,36 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
-constexpr std::array<std::array<const char*, 2>, 4> kBars = {
-    {{"median", "median"}, {"p90", "P90"}, {"p99", "P99"}, {"max", "max"}}};
+struct TimeBar {
+    results::CellFigure figure;
+    const char* name;
+};
+constexpr TimeBar kBars[] = {{of<&Cell::frame_ms, &TimeSummary::median>, "median"},
+                             {of<&Cell::frame_ms, &TimeSummary::p90>, "P90"},
+                             {of<&Cell::frame_ms, &TimeSummary::p99>, "P99"},
+                             {of<&Cell::frame_ms, &TimeSummary::max>, "max"}};
 
-constexpr FigureColumn kTimes[] = {{"frame mean", "frame_ms", "mean"},
-                                   {"frame median", "frame_ms", "median"},
-                                   {"frame p90", "frame_ms", "p90"},
-                                   {"frame p99", "frame_ms", "p99"},
-                                   {"frame max", "frame_ms", "max"},
-                                   {"frame low1", "frame_ms", "low1"},
-                                   {"select median", "select_ms", "median"},
-                                   {"select max", "select_ms", "max"},
-                                   {"submit median", "submit_ms", "median"},
-                                   {"submit max", "submit_ms", "max"},
-                                   {"GPU median", "gpu_ms", "median"},
-                                   {"GPU max", "gpu_ms", "max"},
-                                   {"CPU, all threads median", "cpu_ms", "median"},
-                                   {"CPU, all threads max", "cpu_ms", "max"},
-                                   {"over budget, ms", "jank_ms", nullptr, 1, 1,
-                                    "sum over the frames of what goes over the scenario's budget"}};
+constexpr FigureColumn kTimes[] = {
+    {"frame mean", of<&Cell::frame_ms, &TimeSummary::mean>},
+    {"frame median", of<&Cell::frame_ms, &TimeSummary::median>},
+    {"frame p90", of<&Cell::frame_ms, &TimeSummary::p90>},
+    {"frame p99", of<&Cell::frame_ms, &TimeSummary::p99>},
+    {"frame max", of<&Cell::frame_ms, &TimeSummary::max>},
+    {"frame low1", of<&Cell::frame_ms, &TimeSummary::low1>},
+    {"select median", of<&Cell::select_ms, &TimeSummary::median>},
+    {"select max", of<&Cell::select_ms, &TimeSummary::max>},
+    {"submit median", of<&Cell::submit_ms, &TimeSummary::median>},
+    {"submit max", of<&Cell::submit_ms, &TimeSummary::max>},
+    {"GPU median", of<&Cell::gpu_ms, &TimeSummary::median>},
+    {"GPU max", of<&Cell::gpu_ms, &TimeSummary::max>},
+    {"CPU, all threads median", of<&Cell::cpu_ms, &TimeSummary::median>},
+    {"CPU, all threads max", of<&Cell::cpu_ms, &TimeSummary::max>},
+    {"over budget, ms", of<&Cell::jank_ms>, 1, 1,
+     "sum over the frames of what goes over the scenario's budget"}};
 
 }  // namespace
 
@@ -38,11 +47,11 @@ void add_times(Page& page, const ReportData& data, const ResultSet& set) {
     page.heading(3, "How even it runs", set.id + "-times");
     const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
     Plot plot = bars_of(data, set, "percentiles", "Frame times", "frame time, ms", chosen);
-    for (std::size_t k = 0; k < kBars.size(); ++k) {
-        Series series{kBars[k][1]};
+    for (std::size_t k = 0; k < std::size(kBars); ++k) {
+        Series series{kBars[k].name};
         series.variant = k;
         for (std::size_t c = 0; c < chosen.size(); ++c) {
-            const auto runs = interval(set.groups[chosen[c]], set.seed, "frame_ms", kBars[k][0]);
+            const auto runs = interval(set.groups[chosen[c]], set.seed, kBars[k].figure);
             if (runs) series.marks.push_back({runs->centre, double(c), runs->low, runs->high});
         }
         if (!series.marks.empty()) plot.series.push_back(std::move(series));

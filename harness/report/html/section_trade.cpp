@@ -12,23 +12,26 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
 struct Cost {
     const char* id;
     const char* title;
     const char* axis;
-    const char* key;
-    const char* inner;
+    results::CellFigure figure;
     double unit;
 };
 
 constexpr Cost kCosts[] = {
-    {"time", "Error against frame time", "mean frame time, ms", "frame_ms", "mean", 1},
-    {"triangles", "Error against triangles", "triangles a frame, mean", "triangles", "mean", 1},
-    {"gpu", "Error against GPU memory", "allocated on the GPU, MiB", "gpu_bytes", nullptr,
-     1048576.0},
-    {"prepare", "Error against preprocessing", "preprocessing, s", "prepare_s", nullptr, 1},
+    {"time", "Error against frame time", "mean frame time, ms",
+     of<&Cell::frame_ms, &TimeSummary::mean>, 1},
+    {"triangles", "Error against triangles", "triangles a frame, mean",
+     of<&Cell::triangles, &CountSummary::mean>, 1},
+    {"gpu", "Error against GPU memory", "allocated on the GPU, MiB", of<&Cell::gpu_bytes>,
+     results::kMebibyte},
+    {"prepare", "Error against preprocessing", "preprocessing, s", of<&Cell::prepare_s>, 1},
 };
 
 /// Whether both axes say more by orders of magnitude: all positive, and far apart in one of them.
@@ -71,7 +74,7 @@ Plot trade_plot(const ReportData& data, const ResultSet& set, const Cost& cost) 
     std::vector<TradePoint> points;
     std::size_t infinite = 0;
     for (const results::CellGroup& group : set.groups) {
-        std::vector<double> costs = results::numbers_of(group.good, cost.key, cost.inner);
+        std::vector<double> costs = results::numbers_of(group.good, cost.figure);
         for (double& value : costs) value /= cost.unit;
         const auto error = results::pixel_error(group, results::ErrorMetric::p999);
         points.push_back(trade_point(costs, error, set.seed));
@@ -164,7 +167,7 @@ void add_trade(Page& page, const ReportData& data, const ResultSet& set) {
         page.not_measured("no cell has a pixel error (--no-truth, or every cell failed)");
         return;
     }
-    const bool realtime = any_has(set, "pixel_error_realtime_px", "p999");
+    const bool realtime = any_has(set, of<&Cell::pixel_error_realtime_px, &ErrorFigures::p999>);
     page.paragraph(
         fmt::format(
             "Down and left is better. The settings of a method are joined by a line; ringed "

@@ -12,6 +12,8 @@
 
 namespace lodbench::report::html {
 
+using namespace results::figures;
+
 namespace {
 
 constexpr const char* kNoTruth = "the truth was left out (--no-truth), or every cell failed";
@@ -25,7 +27,7 @@ void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
     std::string silent;
     for (const std::size_t i : choose_groups(set, kMostBars)) {
         const results::CellGroup& group = set.groups[i];
-        const auto honesty = figure(group, "bound_honesty");
+        const auto honesty = figure(group, of<&Cell::bound_honesty>);
         if (!honesty) {
             silent += (silent.empty() ? "" : ", ") + group.label;
             continue;
@@ -45,14 +47,14 @@ void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
         page.not_measured("no method here claims a bound, or the truth was left out");
     }
     static constexpr FigureColumn kMeasures[] = {
-        {"claimed, px", "claimed_px", nullptr, 3},
-        {"measured max, px", "screen_error_px", "max", 3},
-        {"P99.9, px", "screen_error_px", "p999", 3},
-        {"P99, px", "screen_error_px", "p99", 3},
-        {"RMS, px", "screen_error_px", "rms", 3},
-        {"share over the bound", "screen_error_px", "over_tau", 5},
-        {"measured / claimed", "bound_honesty", nullptr, 3},
-        {"seen by the camera, max, px", "visible_error_px", "max", 3}};
+        {"claimed, px", of<&Cell::claimed_px>, 3},
+        {"measured max, px", of<&Cell::screen_error_px, &ErrorFigures::max>, 3},
+        {"P99.9, px", of<&Cell::screen_error_px, &ErrorFigures::p999>, 3},
+        {"P99, px", of<&Cell::screen_error_px, &ErrorFigures::p99>, 3},
+        {"RMS, px", of<&Cell::screen_error_px, &ErrorFigures::rms>, 3},
+        {"share over the bound", of<&Cell::screen_error_px, &ErrorFigures::over_tau>, 5},
+        {"measured / claimed", of<&Cell::bound_honesty>, 3},
+        {"seen by the camera, max, px", of<&Cell::visible_error_px, &ErrorFigures::max>, 3}};
     page.table(
         figure_table(set, "bounds", "Screen error and claimed bounds, " + set.title, kMeasures));
 }
@@ -60,17 +62,17 @@ void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
 void add_popping(Page& page, const ResultSet& set) {
     page.heading(3, "Popping, cracks and the picture", set.id + "-picture");
     static constexpr FigureColumn kMeasures[] = {
-        {"popping max, px", "popping_px", "max", 3},
-        {"popping P99.9, px", "popping_px", "p999", 3},
-        {"samples that pop over 1 px", "popping_px", "over_1px", 0},
-        {"crack pixels", "crack_pixels", "total", 0},
-        {"skirt pixels", "skirt_pixels", "total", 0},
-        {"uncovered samples", "uncovered_samples", nullptr, 0},
-        {"silhouette max, px", "silhouette_px", "max", 2},
-        {"height RMS, m, mean", "height_rmse_m", "mean", 3},
-        {"PSNR, dB", "image", "psnr_db", 2},
-        {"SSIM", "image", "ssim", 5}};
-    if (!any_has(set, "truth_frames")) page.not_measured(kNoTruth);
+        {"popping max, px", of<&Cell::popping_px, &PoppingFigures::max>, 3},
+        {"popping P99.9, px", of<&Cell::popping_px, &PoppingFigures::p999>, 3},
+        {"samples that pop over 1 px", of<&Cell::popping_px, &PoppingFigures::over_1px>, 0},
+        {"crack pixels", of<&Cell::crack_pixels, &TotalAndMax::total>, 0},
+        {"skirt pixels", of<&Cell::skirt_pixels, &TotalAndMax::total>, 0},
+        {"uncovered samples", of<&Cell::uncovered_samples>, 0},
+        {"silhouette max, px", of<&Cell::silhouette_px, &SilhouetteFigures::max>, 2},
+        {"height RMS, m, mean", of<&Cell::height_rmse_m, &HeightFigures::mean>, 3},
+        {"PSNR, dB", of<&Cell::image, &PictureFigures::psnr_db>, 2},
+        {"SSIM", of<&Cell::image, &PictureFigures::ssim>, 5}};
+    if (!any_has(set, of<&Cell::truth_frames>)) page.not_measured(kNoTruth);
     page.table(figure_table(set, "picture", "What the pictures show, " + set.title, kMeasures));
     page.paragraph(
         "PSNR and SSIM compare shaded pictures with the full grid's. A surface without error that "
@@ -84,16 +86,14 @@ void add_worst_pictures(Page& page, const ResultSet& set) {
     std::string html;
     for (const std::size_t i : choose_groups(set, set.groups.size())) {
         const results::CellGroup& group = set.groups[i];
-        for (const Json::Value* cell : group.good) {
-            // Of later repetitions there is none.
-            if (results::member_of(*cell, "pixel_error_px").isNull()) continue;
-            const std::string id = (*cell)["cell"].asString();
+        for (const results::CellRecord* cell : group.good) {
+            if (!cell->pixel_error_px) continue;  // of later repetitions there is none
             const std::string uri =
-                page.pictures().embed(set.folder->path / "shots" / (id + "__worst.png"));
+                page.pictures().embed(set.folder->path / "shots" / (cell->cell + "__worst.png"));
             if (uri.empty()) continue;
-            const std::string words =
-                fmt::format("{}: pixel error P99.9 {} px over the flight", group.label,
-                            readable(figure(group, "pixel_error_px", "p999"), 3));
+            const std::string words = fmt::format(
+                "{}: pixel error P99.9 {} px over the flight", group.label,
+                readable(figure(group, of<&Cell::pixel_error_px, &ErrorFigures::p999>), 3));
             html += fmt::format(
                 "<figure class=\"picture\"><figcaption>{0}</figcaption><div class=\"scroll\" "
                 "role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><img loading=\"lazy\" "

@@ -121,12 +121,10 @@ std::string to_html(const Table& table) {
     return html + "</tbody></table></div>\n";
 }
 
-Setting setting_of(const Json::Value& cell) {
-    Setting setting{cell["scenario"].asString(), cell["method"].asString(), {}};
-    const Json::Value& params = cell["params"];
-    if (!params.isObject()) return setting;
-    for (auto param = params.begin(); param != params.end(); ++param) {
-        setting.params[param.name()] = results::value_text(*param);
+Setting setting_of(const results::CellRecord& cell) {
+    Setting setting{cell.scenario, cell.method, {}};
+    for (const auto& [name, value] : cell.params.values()) {
+        setting.params[name] = results::value_text(value);
     }
     return setting;
 }

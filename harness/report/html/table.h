@@ -1,13 +1,13 @@
 #pragma once
 // A table of the report: one description, from which come its HTML and its CSV.
 
-#include <json/value.h>
-
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "results/cell.h"
 
 namespace lodbench::report::html {
 
@@ -35,7 +35,7 @@ struct Setting {
     std::string method;                         ///< its id
     std::map<std::string, std::string> params;  ///< all of them
 };
-[[nodiscard]] Setting setting_of(const Json::Value& cell);
+[[nodiscard]] Setting setting_of(const results::CellRecord& cell);
 
 struct Table {
     std::string id;       ///< the CSV's name; one for all tables of this kind

@@ -82,7 +82,7 @@ inline void expect_no_error(const std::shared_ptr<const terrain::HeightField>& t
         record.triangles = flight.stage().count_primitives();
         measurer.take(frame++, record, nullptr);
         measurer.measure(record);
-        const measure::FrameTruth& truth = record.truth;
+        const measure::FrameTruth& truth = record;
         ASSERT_TRUE(truth.pixel_max_px) << "no terrain in the picture";
         // So near to the ground that no sample may be in view.
         EXPECT_LE(truth.screen_max_px.value_or(0), kExactPx);
@@ -97,10 +97,10 @@ inline void expect_no_error(const std::shared_ptr<const terrain::HeightField>& t
             EXPECT_EQ(*truth.ssim, 1.0);
         }
     }
-    results::CellResult result;
-    measurer.finish(result);
-    EXPECT_EQ(result.truth["unjudged_pixels"].asUInt64(), 0U);
-    EXPECT_GT(result.truth["screen_error_px"]["count"].asUInt64(), terrain->samples().size());
+    results::CellRecord cell;
+    measurer.finish(cell);
+    EXPECT_EQ(cell.unjudged_pixels, 0U);
+    EXPECT_GT(cell.screen_error_px->count, terrain->samples().size());
 }
 
 /// Far from the world's origin, as the coordinates of a map are. `ridged` is as high for its size

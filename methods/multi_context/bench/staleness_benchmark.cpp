@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "benchmarks.h"
@@ -29,8 +31,8 @@ Camera camera_of(const TerrainInfo& info, double way) {
     return camera;
 }
 
-std::string text_of(const Json::Value& value) {
-    return value.isString() ? value.asString() : fmt::format("{:.3f}", value.asDouble());
+std::string text_of(std::optional<double> value) {
+    return fmt::format("{:.3f}", value.value_or(NAN));
 }
 
 }  // namespace
@@ -64,14 +66,14 @@ void staleness_benchmark(const Options& options) {
         run::FrameMeasurer measurer(stage, kDelta, terrain);
         measurer.take(0, record, nullptr);
         measurer.measure(record);
-        results::CellResult result;
-        measurer.finish(result);
-        const Json::Value& screen = result.truth["screen_error_px"];
-        const Json::Value& pixel = result.truth["pixel_error_px"];
+        results::CellRecord cell;
+        measurer.finish(cell);
+        const auto screen = cell.screen_error_px.value_or(results::ErrorFigures());
+        const auto pixel = cell.pixel_error_px.value_or(results::ErrorFigures());
         fmt::print("  {:6.0f}  {:9} | {:>17} {:>8} {:>14.4f} | {:>16} {:>8} | {:>12}\n", behind,
-                   *record.triangles, text_of(screen["max"]), text_of(screen["p999"]),
-                   100 * screen["over_tau"].asDouble(), text_of(pixel["max"]),
-                   text_of(pixel["p999"]), result.truth["crack_pixels"]["total"].asUInt64());
+                   *record.triangles, text_of(screen.max), text_of(screen.p999),
+                   100 * screen.over_tau.value_or(NAN), text_of(pixel.max), text_of(pixel.p999),
+                   cell.crack_pixels ? cell.crack_pixels->total : 0);
         std::fflush(stdout);
         stage.resume_background();
     }
