@@ -85,7 +85,7 @@ class Documents(unittest.TestCase):
                                "--repeat", "1", "--out", str(out))
             self.assertEqual(status, 0, text)
             cell = json.loads((out / "cells.jsonl").read_text().splitlines()[0])
-            for name in re.findall(r"`([\w./]+)`", page("docs/results.md").split("|")[0]):
+            for name in re.findall(r"`([\w./]+)`", page("docs/results.md").split("In cells.jsonl")[0]):
                 if "/" not in name.rstrip("/"):
                     self.assertTrue((out / name).exists(), name)
         fields = page("docs/results.md").split("## Fields of a cell")[1].split("\nIn ")[0]
