@@ -85,11 +85,10 @@ void CampaignOptions::add_to(CLI::App& command) {
         "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
         "where that is taken");
     add_plugin_dirs(command, request.plugin_dirs);
-    command.add_option("--frames", request.overrides.frames, "frames of the flight")
-        ->check(CLI::Range(1, 1000000));
-    add_size(command, request.overrides.viewport);
+    add_overrides(command, request.overrides);
     seed_option_ = add_seed(command, seed_, "seed of the order and of random choices");
-    command.add_option("--repeat", request.overrides.repetitions, "repetitions of each cell")
+    add_override(command, request.overrides, "--repeat", "run.repetitions",
+                 "repetitions of each cell")
         ->check(CLI::Range(1, 1000));
     add_device(command, request.device);
     command.add_flag("--json", json, "print one JSON object instead of the table");
@@ -106,7 +105,10 @@ void CampaignOptions::require_folder_to_resume() const {
 }
 
 void CampaignOptions::finish() {
-    if (*seed_option_) request.overrides.seed = seed_;
+    if (*seed_option_) {
+        request.overrides.set("run.seed", fmt::format("{}", seed_),
+                              fmt::format("--seed {}", seed_));
+    }
     request.load_average = run::load_average();
     request.command_line = fmt::format("{}", fmt::join(command_words(), " "));
     if (request.out.empty()) request.out = made_ = make_default_out();

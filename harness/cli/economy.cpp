@@ -1,6 +1,7 @@
 // lodbench economy: how many triangles methods draw, and how few would do.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
@@ -76,10 +77,13 @@ std::string economy_text(const std::vector<results::CellRecord>& cells) {
 
 int economy(Options& options) {
     run::RunRequest& request = options.request;
-    request.overrides.economy = options.frames;
-    request.overrides.truth = true;
-    request.overrides.pixels_only = false;
-    if (!request.overrides.repetitions) request.overrides.repetitions = 1;
+    const std::string frames = fmt::format("{}", fmt::join(options.frames, ", "));
+    request.overrides.set("measure.economy", "[" + frames + "]", "--frame " + frames);
+    request.overrides.set("measure.truth", "true", "economy");
+    request.overrides.set("measure.pixels_only", "false", "economy");
+    if (!request.overrides.has("run.repetitions")) {
+        request.overrides.set("run.repetitions", "1", "economy");
+    }
     options.finish();
     Progress progress;
     const run::CampaignOutcome outcome = run_campaign(request, run::executable_path(), progress);

@@ -154,8 +154,7 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
 int run_mesh(const MeshOptions& options) {
     const std::filesystem::path file =
         options.scenario.empty() ? run::demo_scenario() : std::filesystem::path(options.scenario);
-    scenario::Scenario scenario = scenario::load_scenario(file);
-    scenario::apply(options.overrides, scenario);
+    scenario::Scenario scenario = scenario::load_scenario(file, options.overrides);
     if (options.frame >= scenario.frames) {
         throw InputError(fmt::format("--frame {}: the flight of {} has frames 0 to {}",
                                      options.frame, scenario.name, scenario.frames - 1));
@@ -199,11 +198,7 @@ void add_mesh(CLI::App& app, int& status) {
         ->check(CLI::Range(0, 999999));
     command->add_option("-o,--out", options->out, "file to write, whole or not at all")->required();
     add_repeated(*command, "--set", options->settings, "[METHOD.]PARAM=VALUE");
-    command
-        ->add_option("--frames", options->overrides.frames,
-                     "number of frames over which the path is spread")
-        ->check(CLI::PositiveNumber);
-    add_size(*command, options->overrides.viewport);
+    add_overrides(*command, options->overrides);
     add_time_limit(
         *command, options->time_limit_s,
         "of the flight to that frame, seconds; as the scenario's cell_time_limit_s says");

@@ -40,12 +40,47 @@ void add_device(CLI::App& command, std::string& device) {
                        "EGL device: number or part of its name, see `lodbench list --devices`");
 }
 
-void add_size(CLI::App& command, std::optional<Viewport>& size) {
+CLI::Option* add_override(CLI::App& command, scenario::Overrides& overrides,
+                          const std::string& name, const std::string& key,
+                          const std::string& help) {
+    return command.add_option_function<std::int64_t>(
+        name,
+        [&overrides, name, key](std::int64_t value) {
+            overrides.set(key, fmt::format("{}", value), fmt::format("{} {}", name, value));
+        },
+        help);
+}
+
+void add_overrides(CLI::App& command, scenario::Overrides& overrides) {
+    add_override(command, overrides, "--frames", "flight.frames", "frames of the flight")
+        ->check(CLI::Range(1, 1000000));
     command
         .add_option_function<std::string>(
-            "--size", [&size](const std::string& text) { size = parse_size(text); },
+            "--size",
+            [&overrides](const std::string& text) {
+                const Viewport size = parse_size(text);
+                overrides.set("viewport.width", fmt::format("{}", size.width), "--size " + text);
+                overrides.set("viewport.height", fmt::format("{}", size.height), "--size " + text);
+            },
             "viewport in pixels, as 640x480")
         ->type_name("WIDTHxHEIGHT");
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--override",
+            [&overrides](const std::vector<std::string>& texts) {
+                for (const std::string& text : texts) {
+                    const std::size_t equals = text.find('=');
+                    if (equals == 0 || equals == text.npos) {
+                        throw InputError(fmt::format(
+                            "--override {}: expected KEY=VALUE, as measure.every=4", text));
+                    }
+                    overrides.set(text.substr(0, equals), text.substr(equals + 1),
+                                  "--override " + text);
+                }
+            },
+            "KEY=VALUE, in place of the scenario's: measure.every=4 (again for more)")
+        ->allow_extra_args(false)
+        ->type_name("TEXT");
 }
 
 CLI::Validator finite_and_positive(const std::string& what) {

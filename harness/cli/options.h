@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "api/camera.h"
 #include "run/plugin_library.h"
+#include "scenario/scenario.h"
 
 namespace lodbench::cli {
 
@@ -24,8 +24,12 @@ CLI::Option* add_repeated(CLI::App& command, const std::string& names, std::vect
 void add_plugin_dirs(CLI::App& command, std::vector<std::filesystem::path>& folders);
 /// --device, as for platform::Context
 void add_device(CLI::App& command, std::string& device);
-/// --size; throws InputError while the command line is read.
-void add_size(CLI::App& command, std::optional<Viewport>& size);
+/// An option NAME whose whole number takes the place of the scenario's value at `key`.
+CLI::Option* add_override(CLI::App& command, scenario::Overrides& overrides,
+                          const std::string& name, const std::string& key, const std::string& help);
+/// --frames, --size, and --override for every other key; they throw InputError while the command
+/// line is read.
+void add_overrides(CLI::App& command, scenario::Overrides& overrides);
 
 /// --seed, any whole number of 64 bits without a sign; throws InputError while the command line is
 /// read.

@@ -55,7 +55,7 @@ int fly(Options& options) {
     run::RunRequest& request = options.request;
     options.require_folder_to_resume();
     options.finish();
-    if (options.no_truth) request.overrides.truth = false;
+    if (options.no_truth) request.overrides.set("measure.truth", "false", "--no-truth");
     if (request.resume && !request.names_cells() &&
         !std::filesystem::exists(request.out / "run.json")) {
         throw InputError(

@@ -101,7 +101,7 @@ int sweep(Options& options) {
     const results::ErrorMetric metric = read_metric(options.metric);
     std::map<std::string, std::string> knobs;
     spread_knobs(options, find_plugins(options.request.plugin_dirs), knobs);
-    options.request.overrides.truth = true;
+    options.request.overrides.set("measure.truth", "true", "sweep");
     options.require_folder_to_resume();
     options.finish();
     Progress progress;

@@ -54,9 +54,13 @@ std::string checksum_of_file(const fs::path& file) {
     return results::checksum_of(base::read_text(file));
 }
 
-/// Whether the flight is that for which its knob values were found.
+/// Whether the flight is that for which its knob values were found: what is overridden may be how
+/// often it is flown and what is measured.
 bool flown_as_kept(const RunRequest& request) {
-    return !request.overrides.frames && !request.overrides.viewport && request.settings.empty();
+    const auto& overrides = request.overrides.values();
+    return request.settings.empty() && std::ranges::all_of(overrides, [](const auto& value) {
+               return value.first.starts_with("run.") || value.first.starts_with("measure.");
+           });
 }
 
 Json::Value to_json(const scenario::EqualError& equal, bool as_kept) {

@@ -14,19 +14,7 @@ std::string write_spec(const CellSpec& spec) {
     json["scenario_file"] = spec.scenario_file.string();
     json["scenario_origin"] = spec.scenario_origin.string();
     Json::Value& overrides = json["overrides"] = Json::objectValue;
-    if (spec.overrides.frames) overrides["frames"] = *spec.overrides.frames;
-    if (spec.overrides.truth) overrides["truth"] = *spec.overrides.truth;
-    if (spec.overrides.pixels_only) overrides["pixels_only"] = *spec.overrides.pixels_only;
-    if (spec.overrides.economy) {
-        Json::Value& frames = overrides["economy"] = Json::arrayValue;
-        for (const int frame : *spec.overrides.economy) frames.append(frame);
-    }
-    if (spec.overrides.seed) overrides["seed"] = Json::UInt64(*spec.overrides.seed);
-    if (spec.overrides.repetitions) overrides["repetitions"] = *spec.overrides.repetitions;
-    if (spec.overrides.viewport) {
-        overrides["width"] = spec.overrides.viewport->width;
-        overrides["height"] = spec.overrides.viewport->height;
-    }
+    for (const auto& [key, value] : spec.overrides.values()) overrides[key] = value.toml;
     json["method"] = spec.method;
     json["plugin"] = spec.plugin.string();
     json["settings"] = Json::arrayValue;
@@ -53,21 +41,8 @@ CellSpec read_spec(std::string_view text, const std::string& where) {
         spec.scenario_file = results::get_string(json, "scenario_file", where);
         spec.scenario_origin = results::get_string(json, "scenario_origin", where);
         const Json::Value& overrides = json["overrides"];
-        if (overrides.isMember("frames")) spec.overrides.frames = overrides["frames"].asInt();
-        if (overrides.isMember("truth")) spec.overrides.truth = overrides["truth"].asBool();
-        if (overrides.isMember("pixels_only")) {
-            spec.overrides.pixels_only = overrides["pixels_only"].asBool();
-        }
-        if (overrides.isMember("economy")) {
-            auto& frames = spec.overrides.economy.emplace();
-            for (const Json::Value& frame : overrides["economy"]) frames.push_back(frame.asInt());
-        }
-        if (overrides.isMember("seed")) spec.overrides.seed = overrides["seed"].asUInt64();
-        if (overrides.isMember("repetitions"))
-            spec.overrides.repetitions = overrides["repetitions"].asInt();
-        if (overrides.isMember("width")) {
-            spec.overrides.viewport =
-                Viewport{overrides["width"].asInt(), overrides["height"].asInt()};
+        for (auto value = overrides.begin(); value != overrides.end(); ++value) {
+            spec.overrides.set(value.name(), value->asString(), where + ": " + value.name());
         }
         spec.method = results::get_string(json, "method", where);
         spec.plugin = results::get_string(json, "plugin", where);

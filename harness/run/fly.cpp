@@ -35,11 +35,9 @@ namespace lodbench::run {
 namespace {
 
 scenario::Scenario read_scenario(const CellSpec& spec) {
-    scenario::Scenario scenario =
-        scenario::parse_scenario(terrain::read_toml_text(spec.scenario_file), spec.scenario_origin,
-                                 scenario::kept_flight(spec.scenario_file));
-    scenario::apply(spec.overrides, scenario);
-    return scenario;
+    return scenario::parse_scenario(terrain::read_toml_text(spec.scenario_file),
+                                    spec.scenario_origin, scenario::kept_flight(spec.scenario_file),
+                                    spec.overrides);
 }
 
 double process_cpu_seconds() {

@@ -1,6 +1,7 @@
 #include "run/match.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -194,7 +195,10 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
     const bool of_the_truth = target.quantity == results::MatchTarget::Quantity::pixel_error;
     RunRequest request = asked;
     request.kept_knobs = false;
-    if (of_the_truth) request.overrides.truth = true;
+    const auto override_with = [](RunRequest& changed, const char* key, const std::string& toml) {
+        changed.overrides.set(key, toml, "match");
+    };
+    if (of_the_truth) override_with(request, "measure.truth", "true");
     if (request.scenarios.size() > 1) {
         throw InputError("match: name one scenario; a knob that fits one flight fits no other");
     }
@@ -236,10 +240,11 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
                                                  method.knob->text(value)));
             probe.views = folder->views();
             probe.out = request.out / "search" / fmt::format("{}-{:02}", method.method, number++);
-            probe.overrides.repetitions = 1;
-            probe.overrides.truth = of_the_truth;
-            probe.overrides.economy.emplace();   // none
-            probe.overrides.pixels_only = true;  // the error that is to be equal is theirs
+            override_with(probe, "run.repetitions", "1");
+            override_with(probe, "measure.truth", of_the_truth ? "true" : "false");
+            override_with(probe, "measure.economy", "[]");
+            // The error that is to be equal is the pixels'.
+            override_with(probe, "measure.pixels_only", "true");
             watch.begin_flight();
             const CampaignOutcome flown = [&] {
                 try {
@@ -277,7 +282,9 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
     }
 
     RunRequest final = request;
-    final.overrides.economy = economy_of_measured_frames(plan.scenarios.front());
+    override_with(
+        final, "measure.economy",
+        fmt::format("[{}]", fmt::join(economy_of_measured_frames(plan.scenarios.front()), ", ")));
     final.methods.clear();
     for (const MatchedMethod& method : outcome.methods) {
         if (method.knob && !method.search.best) continue;  // no value of its knob could be flown

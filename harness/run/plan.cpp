@@ -190,8 +190,7 @@ const MethodInfo& method_again(const std::vector<PluginListing>& plugins, const 
 
 bool RunRequest::names_cells() const {
     return !scenarios.empty() || !methods.empty() || !settings.empty() || !device.empty() ||
-           overrides.frames || overrides.viewport || overrides.seed || overrides.repetitions ||
-           overrides.truth || overrides.economy;
+           !overrides.empty();
 }
 
 std::optional<Settings::value_type> kept_knob(const scenario::Scenario& scenario,
@@ -251,8 +250,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     std::set<std::string> used;  // methods that fly somewhere
     std::set<std::string> ids;
     for (const fs::path& file : files) {
-        scenario::Scenario scenario = scenario::load_scenario(file);
-        scenario::apply(request.overrides, scenario);
+        scenario::Scenario scenario = scenario::load_scenario(file, request.overrides);
         if (std::ranges::find(plan.scenarios, scenario.name, &scenario::Scenario::name) !=
             plan.scenarios.end()) {
             throw InputError(
@@ -308,7 +306,7 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
         throw InputError("there is no method to fly: no plugin was found; give --plugin-dir DIR");
     }
     std::ranges::copy(warn_of_compilation(methods, used), std::back_inserter(plan.warnings));
-    plan.seed = request.overrides.seed.value_or(plan.scenarios.front().seed);
+    plan.seed = plan.scenarios.front().seed;
     interleave(plan.cells, plan.seed);
     base::SplitMix64 seeds(~plan.seed);
     for (PlannedCell& cell : plan.cells) cell.spec.seed = seeds.next();
@@ -331,6 +329,17 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out,
                     const std::vector<PluginListing>& plugins) {
     const std::string where = (out / "run.json").string();
     Plan plan;
+    for (Json::Value json : results::get_array(run, "cells", where)) {
+        for (const char* key : {"out", "scenario_file", "scenario_origin"}) json[key] = "";
+        PlannedCell cell;
+        cell.spec = read_spec(results::to_text(json), where);
+        results::expect_file_name(cell.spec.id, "cell", where);
+        cell.scenario = results::get_string(json, "scenario", where);
+        const MethodInfo& method = method_again(plugins, cell.spec.method);
+        cell.spec.plugin = method.plugin;
+        cell.params = make_params(method, cell.spec.settings, where);
+        plan.cells.push_back(std::move(cell));
+    }
     for (const Json::Value& json : results::get_array(run, "scenarios", where)) {
         const std::string name = results::get_string(json, "name", where);
         results::expect_file_name(name, "scenario", where);
@@ -339,15 +348,13 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out,
         const fs::path origin = results::get_string(json, "file", where);
         const fs::path kept = scenario::kept_flight(file);
         if (!kept.empty()) results::expect_plain_file(kept);
-        plan.scenarios.push_back(scenario::parse_scenario(base::read_text(file), origin, kept));
+        const auto cell = std::ranges::find(plan.cells, name, &PlannedCell::scenario);
+        plan.scenarios.push_back(scenario::parse_scenario(
+            base::read_text(file), origin, kept,
+            cell == plan.cells.end() ? scenario::Overrides() : cell->spec.overrides));
         plan.origins.push_back(origin);
     }
-    for (Json::Value json : results::get_array(run, "cells", where)) {
-        for (const char* key : {"out", "scenario_file", "scenario_origin"}) json[key] = "";
-        PlannedCell cell;
-        cell.spec = read_spec(results::to_text(json), where);
-        results::expect_file_name(cell.spec.id, "cell", where);
-        cell.scenario = results::get_string(json, "scenario", where);
+    for (const PlannedCell& cell : plan.cells) {
         if (std::ranges::find(plan.scenarios, cell.scenario, &scenario::Scenario::name) ==
             plan.scenarios.end()) {
             throw InputError(
@@ -355,15 +362,6 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out,
                             "among its scenarios; {}",
                             where, cell.spec.id, cell.scenario, results::kCopyAgain));
         }
-        const MethodInfo& method = method_again(plugins, cell.spec.method);
-        cell.spec.plugin = method.plugin;
-        cell.params = make_params(method, cell.spec.settings, where);
-        plan.cells.push_back(std::move(cell));
-    }
-    for (std::size_t i = 0; i < plan.scenarios.size(); ++i) {
-        const auto cell =
-            std::ranges::find(plan.cells, plan.scenarios[i].name, &PlannedCell::scenario);
-        if (cell != plan.cells.end()) scenario::apply(cell->spec.overrides, plan.scenarios[i]);
     }
     plan.seed = run["seed"].asUInt64();
     return plan;

@@ -1,6 +1,7 @@
 #include "scenario/scenario.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -323,23 +324,36 @@ void read_methods(Section& top, Scenario& scenario) {
     }
 }
 
-/// The frames at the same parts of a flight of another number of frames.
-void move_frames(std::vector<int>& frames, int from, int to) {
+/// As an override of the frames at the same parts of a flight of `to` frames.
+std::string moved_frames(std::vector<int> frames, int from, std::int64_t to) {
     for (int& frame : frames) {
-        frame = from == 1 ? 0 : int(std::lround(double(frame) * (to - 1) / (from - 1)));
+        frame = from == 1 ? 0 : int(std::lround(double(frame) * double(to - 1) / (from - 1)));
     }
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return fmt::format("[{}]", fmt::join(frames, ", "));
 }
 
-}  // namespace
-
-Scenario parse_scenario(std::string_view text, const std::filesystem::path& file) {
-    return parse_scenario(text, file, {});
+void put(const std::string& path, const Overrides::Value& value, toml::table& table) {
+    toml::table parsed = terrain::parse_toml_value(value.toml, value.where);
+    std::string_view rest = path;
+    toml::table* at = &table;
+    for (std::size_t dot = 0; (dot = rest.find('.')) != rest.npos; rest.remove_prefix(dot + 1)) {
+        const std::string_view name = rest.substr(0, dot);
+        toml::node* const inner = at->get(name);
+        if (inner != nullptr && !inner->is_table()) {
+            throw InputError(
+                fmt::format("{}: {} is no table of the scenario; write the path to a "
+                            "key, as flight.frames=25",
+                            value.where, base::printable(name)));
+        }
+        at = inner != nullptr ? inner->as_table()
+                              : at->insert_or_assign(name, toml::table()).first->second.as_table();
+    }
+    parsed.get("value")->visit([&](auto& node) { at->insert_or_assign(rest, std::move(node)); });
 }
 
-Scenario parse_scenario(std::string_view text, const std::filesystem::path& file,
-                        const std::filesystem::path& kept) {
-    const toml::table table = terrain::parse_toml(text, file);
+Scenario read_scenario(const toml::table& table, std::string_view text,
+                       const std::filesystem::path& file, const std::filesystem::path& kept) {
     const std::filesystem::path folder = file.parent_path();
     Section top(table, file, "");
     Scenario scenario;
@@ -360,6 +374,36 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
     return scenario;
 }
 
+}  // namespace
+
+Scenario parse_scenario(std::string_view text, const std::filesystem::path& file,
+                        const std::filesystem::path& kept, const Overrides& overrides) {
+    toml::table table = terrain::parse_toml(text, file);
+    Overrides all = overrides;
+    if (const auto frames = overrides.values().find("flight.frames");
+        frames != overrides.values().end()) {
+        const Scenario written = read_scenario(table, text, file, kept);
+        const auto& [toml, where] = frames->second;
+        const auto to = terrain::parse_toml_value(toml, where)["value"].value<std::int64_t>();
+        const auto move = [&](const char* key, const std::vector<int>& named) {
+            if (named.empty() || !to || overrides.has(key)) return;
+            all.set(key, moved_frames(named, written.frames, *to), where);
+        };
+        move("measure.shots", written.measure.shots);
+        move("measure.economy", written.measure.economy);
+    }
+    for (const auto& [path, value] : all.values()) put(path, value, table);
+    Scenario scenario = read_scenario(table, text, file, kept);
+    if (scenario.terrain.out_of_core && scenario.measure.truth) {
+        throw InputError(fmt::format(
+            "{}: out_of_core is set, but measuring the truth needs the whole terrain in memory; "
+            "leave out_of_core out where it fits, or do not measure: truth = false under "
+            "[measure], or lodbench run --no-truth",
+            scenario.terrain.where));
+    }
+    return scenario;
+}
+
 std::filesystem::path place_of_kept_flight(const std::filesystem::path& file) {
     return std::filesystem::path(file).replace_extension(".flight.csv");
 }
@@ -370,13 +414,13 @@ std::filesystem::path kept_flight(const std::filesystem::path& file) {
     return std::filesystem::is_regular_file(kept, none) ? kept : std::filesystem::path();
 }
 
-Scenario load_scenario(const std::filesystem::path& file) {
+Scenario load_scenario(const std::filesystem::path& file, const Overrides& overrides) {
     const std::filesystem::path kept = kept_flight(file);
     const std::string text = terrain::read_toml_text(file);
     // What ends a process cannot be caught: tried in a child first. A refusal is met again below,
     // in words.
     const base::Answer rehearsal = base::run_isolated(kRehearsalSeconds, [&] {
-        (void)parse_scenario(text, file, kept);
+        (void)parse_scenario(text, file, kept, overrides);
         return std::string();
     });
     if (rehearsal.ending == base::Ending::died || rehearsal.ending == base::Ending::timed_out) {
@@ -385,48 +429,7 @@ Scenario load_scenario(const std::filesystem::path& file) {
                         "nested, simplify it",
                         file.string(), rehearsal.text));
     }
-    return parse_scenario(text, file, kept);
-}
-
-void apply(const Overrides& overrides, Scenario& scenario) {
-    const auto require = [](const char* option, long long value, long long maximum) {
-        if (value >= 1 && value <= maximum) return;
-        throw InputError(fmt::format("{} {}: out of range; give 1 to {}", option, value, maximum));
-    };
-    if (overrides.frames) {
-        require("--frames", *overrides.frames, kMaxFrames);
-        for (auto* frames : {&scenario.measure.shots, &scenario.measure.economy}) {
-            move_frames(*frames, scenario.frames, *overrides.frames);
-        }
-        scenario.frames = *overrides.frames;
-    }
-    if (overrides.viewport) {
-        require("--size: width", overrides.viewport->width, kMaxPixels);
-        require("--size: height", overrides.viewport->height, kMaxPixels);
-        scenario.viewport = *overrides.viewport;
-    }
-    if (overrides.seed) scenario.seed = *overrides.seed;
-    if (overrides.truth) scenario.measure.truth = *overrides.truth;
-    if (overrides.pixels_only) scenario.measure.pixels_only = *overrides.pixels_only;
-    if (overrides.economy) {
-        for (const int frame : *overrides.economy) {
-            if (frame >= 0 && frame < scenario.frames) continue;
-            throw InputError(fmt::format("--frame {}: the flight has the frames 0 to {}", frame,
-                                         scenario.frames - 1));
-        }
-        scenario.measure.economy = *overrides.economy;
-    }
-    if (overrides.repetitions) {
-        require("--repeat", *overrides.repetitions, kMaxRepetitions);
-        scenario.repetitions = *overrides.repetitions;
-    }
-    if (scenario.terrain.out_of_core && scenario.measure.truth) {
-        throw InputError(fmt::format(
-            "{}: out_of_core is set, but measuring the truth needs the whole terrain in memory; "
-            "leave out_of_core out where it fits, or do not measure: truth = false under "
-            "[measure], or lodbench run --no-truth",
-            scenario.terrain.where));
-    }
+    return parse_scenario(text, file, kept, overrides);
 }
 
 }  // namespace lodbench::scenario

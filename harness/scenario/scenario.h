@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -69,26 +70,34 @@ struct Scenario {
     std::vector<MethodRequest> methods;  ///< empty: all methods that were found
 };
 
-/// What the command line overrides.
-struct Overrides {
-    std::optional<int> frames = {};
-    std::optional<Viewport> viewport = {};
-    std::optional<std::uint64_t> seed = {};
-    std::optional<int> repetitions = {};
-    std::optional<bool> truth = {};
-    std::optional<bool> pixels_only = {};
-    std::optional<std::vector<int>> economy = {};
+/// Values that take the place of a scenario's own, by the path to their key: "flight.frames".
+class Overrides {
+public:
+    struct Value {
+        std::string toml;   ///< "25", "[0, 12]", "\"line\""
+        std::string where;  ///< who asks for it, for messages: "--frames 25"
+    };
+    void set(const std::string& key, std::string toml, std::string where) {
+        values_[key] = {std::move(toml), std::move(where)};
+    }
+    [[nodiscard]] bool has(const std::string& key) const { return values_.contains(key); }
+    [[nodiscard]] bool empty() const { return values_.empty(); }
+    [[nodiscard]] const std::map<std::string, Value>& values() const { return values_; }
+
+private:
+    std::map<std::string, Value> values_;
 };
 
 /// Parses a scenario. Relative files in it are relative to the scenario's folder. Caps file size (1
 /// MiB), line length (4096 bytes) and nesting before the TOML parser sees the text. Throws
 /// InputError as "FILE:LINE: what VALUE is wrong with; remedy"; an unknown key is an error that
 /// lists the known ones.
-[[nodiscard]] Scenario parse_scenario(std::string_view text, const std::filesystem::path& file);
-
-/// The same for what a results folder keeps: `kept` is the copy of its recorded flight, or empty.
+/// `kept` is the copy of its recorded flight that a results folder keeps, or empty. Overrides are
+/// put into the table that was read, and are checked as what the file says is; where they change
+/// the number of frames, the frames that the file names move along.
 [[nodiscard]] Scenario parse_scenario(std::string_view text, const std::filesystem::path& file,
-                                      const std::filesystem::path& kept);
+                                      const std::filesystem::path& kept = {},
+                                      const Overrides& overrides = {});
 
 /// Where the copy of a recorded flight lies beside the scenario's file: NAME.flight.csv.
 [[nodiscard]] std::filesystem::path place_of_kept_flight(const std::filesystem::path& file);
@@ -98,11 +107,7 @@ struct Overrides {
 /// The same from a file, parsed in a child process first, so that a parser that dies costs a
 /// message only. A recorded flight that is kept beside it goes before the file that it names: so a
 /// scenario of a results folder is flown as it was.
-[[nodiscard]] Scenario load_scenario(const std::filesystem::path& file);
-
-/// Where the number of frames changes, frames that the scenario names move along. Throws InputError
-/// for what is out of range, and for a scenario that then asks for what excludes
-/// each other.
-void apply(const Overrides& overrides, Scenario& scenario);
+[[nodiscard]] Scenario load_scenario(const std::filesystem::path& file,
+                                     const Overrides& overrides = {});
 
 }  // namespace lodbench::scenario

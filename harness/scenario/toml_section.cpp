@@ -270,13 +270,16 @@ std::string Section::known_names(std::string_view given, const std::vector<std::
 void Section::refuse_unknown() const {
     // In the order of the file, so that the first mistake is the one that is told.
     const toml::key* first = nullptr;
+    const toml::node* named = nullptr;
     for (const auto& [key, value] : table_) {
         if (std::find(asked_.begin(), asked_.end(), key.str()) != asked_.end()) continue;
-        if (first == nullptr || key.source().begin < first->source().begin) first = &key;
+        if (first != nullptr && !(key.source().begin < first->source().begin)) continue;
+        first = &key;
+        named = &value;
     }
     if (first == nullptr) return;
     throw InputError(fmt::format("{}: {}{}{} is not a key of a scenario; {}",
-                                 terrain::toml_place(*first, file_), title_,
+                                 terrain::toml_place(*named, file_), title_,
                                  title_.empty() ? "" : " ", base::printable(first->str()),
                                  known_names(first->str(), asked_)));
 }

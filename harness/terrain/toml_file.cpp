@@ -109,6 +109,7 @@ private:
 };
 
 std::string place(const toml::source_region& source, const std::filesystem::path& file) {
+    if (source.path) return *source.path;              // a value of its own
     if (source.begin.line == 0) return file.string();  // made by the program, not parsed
     return fmt::format("{}:{}", file.string(), source.begin.line);
 }
@@ -136,6 +137,20 @@ toml::table parse_toml(std::string_view text, const std::filesystem::path& file)
         throw InputError(fmt::format("{}: not TOML: {}", place(error.source(), file),
                                      one_line(error.description())));
     }
+}
+
+toml::table parse_toml_value(const std::string& value, const std::string& where) {
+    const std::string text = "value = " + value;
+    Guard(text, where).check();
+    try {
+        toml::table table = toml::parse(text, where);
+        if (table.size() == 1) return table;
+    } catch (const toml::parse_error&) {
+        // below
+    }
+    throw InputError(
+        fmt::format("{}: {} is no value of TOML; write a number, true, false, \"text\" or [1, 2]",
+                    where, base::printable(value)));
 }
 
 std::string read_toml_text(const std::filesystem::path& file) {

@@ -22,13 +22,17 @@ inline constexpr int kTomlMaxDepth =
 /// see `toml_place`.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::filesystem::path& file);
 
+/// Parses one value, as it stands behind "key = ": the table holds it under "value". `where` is
+/// what messages call it, "--frames 25", and what `toml_place` says of it. Throws InputError.
+[[nodiscard]] toml::table parse_toml_value(const std::string& value, const std::string& where);
+
 /// Reads a whole file of text: at most kTomlMaxBytes, else InputError "FILE: ...".
 [[nodiscard]] std::string read_toml_text(const std::filesystem::path& file);
 
 /// `parse_toml` of `read_toml_text`.
 [[nodiscard]] toml::table read_toml(const std::filesystem::path& file);
 
-/// "FILE:LINE" of a node, to put in front of a message.
+/// "FILE:LINE" of a node, or where its value came from, to put in front of a message.
 [[nodiscard]] std::string toml_place(const toml::node& node, const std::filesystem::path& file);
 
 /// "FILE:LINE" of a key.

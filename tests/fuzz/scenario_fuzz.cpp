@@ -108,7 +108,6 @@ void use_as_scenario(std::string_view text) {
     try {
         scenario::Scenario scenario = scenario::parse_scenario(text, file);
         check_numbers(scenario);
-        scenario::apply({}, scenario);
         check_flight(scenario);
     } catch (const InputError& error) {
         check_refusal(error.what(), file.string());

@@ -78,7 +78,7 @@ TEST(CellRecord, survives_the_way_from_child_to_parent) {
     spec.id = "x";
     spec.settings = {{"tau", "1"}};
     spec.seed = UINT64_MAX;
-    spec.overrides.viewport = Viewport{32, 24};
+    spec.overrides.set("viewport.width", "32", "--size 32x24");
     EXPECT_EQ(write_spec(read_spec(write_spec(spec), "here")), write_spec(spec));
     EXPECT_EQ(read_spec(write_spec(spec), "here").seed, UINT64_MAX);
 }

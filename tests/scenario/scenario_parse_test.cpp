@@ -364,27 +364,69 @@ TEST(Scenario, name_comes_from_the_file_unless_it_cannot) {
     }
 }
 
-TEST(Overrides, replace_what_they_name_and_are_checked) {
-    Scenario scenario = parse(kLeast + "[measure]\nshots = [0, 60, 119]\n");
-    apply({}, scenario);
-    EXPECT_EQ(scenario.frames, 120);
-    EXPECT_TRUE(scenario.measure.truth);
-    apply({.frames = 60, .viewport = Viewport{64, 48}, .seed = 5, .repetitions = 2, .truth = false},
-          scenario);
-    EXPECT_FALSE(scenario.measure.truth);
-    EXPECT_EQ(scenario.frames, 60);
-    EXPECT_EQ(scenario.viewport, (Viewport{64, 48}));
+Scenario overridden(const std::string& text,
+                    const std::vector<std::pair<std::string, std::string>>& values) {
+    Overrides overrides;
+    for (const auto& [key, value] : values) overrides.set(key, value, "--override " + key);
+    return parse_scenario(text, "flights/least.toml", {}, overrides);
+}
+
+std::string override_refusal(const std::string& text, const std::string& key,
+                             const std::string& value) {
+    try {
+        (void)overridden(text, {{key, value}});
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "taken";
+}
+
+TEST(Overrides, take_the_place_of_what_the_file_says_or_leaves_out) {
+    const Scenario scenario = overridden(kLeast, {{"viewport.width", "64"},
+                                                  {"run.seed", "5"},
+                                                  {"measure.truth", "false"},
+                                                  {"measure.economy", "[3, 4]"},
+                                                  {"camera.near", "2.5"}});
+    EXPECT_EQ(scenario.viewport.width, 64);
+    EXPECT_EQ(scenario.viewport.height, parse(kLeast).viewport.height);
     EXPECT_EQ(scenario.seed, 5U);
-    EXPECT_EQ(scenario.repetitions, 2);
-    EXPECT_THAT(scenario.measure.shots, ElementsAre(0, 30, 59));
-    apply({.frames = 2}, scenario);
-    EXPECT_THAT(scenario.measure.shots, ElementsAre(0, 1));
-    apply({.frames = 1}, scenario);
-    apply({.frames = 9}, scenario);
-    EXPECT_THAT(scenario.measure.shots, ElementsAre(0));
-    EXPECT_THROW(apply({.frames = 0}, scenario), InputError);
-    EXPECT_THROW(apply({.viewport = Viewport{0, 4}}, scenario), InputError);
-    EXPECT_THROW(apply({.repetitions = -1}, scenario), InputError);
+    EXPECT_FALSE(scenario.measure.truth);
+    EXPECT_THAT(scenario.measure.economy, ElementsAre(3, 4));
+    EXPECT_EQ(scenario.near_plane, 2.5);
+    EXPECT_EQ(scenario.text, kLeast) << "the record is of the file";
+}
+
+TEST(Overrides, of_the_frames_take_the_frames_along_that_the_file_names) {
+    const std::string text = kLeast + "[measure]\nshots = [0, 60, 119]\n";
+    const auto shots = [&](const char* frames) {
+        return overridden(text, {{"flight.frames", frames}}).measure.shots;
+    };
+    EXPECT_EQ(overridden(text, {}).frames, 120);
+    EXPECT_EQ(overridden(text, {{"flight.frames", "60"}}).frames, 60);
+    EXPECT_THAT(shots("60"), ElementsAre(0, 30, 59));
+    EXPECT_THAT(shots("2"), ElementsAre(0, 1));
+    EXPECT_THAT(shots("1"), ElementsAre(0));
+    EXPECT_THAT(overridden(text, {{"flight.frames", "60"}, {"measure.shots", "[7]"}}).measure.shots,
+                ElementsAre(7));
+}
+
+TEST(Overrides, are_checked_as_the_file_is_and_name_who_asked) {
+    const auto refused = [](const std::string& key, const std::string& value) {
+        return override_refusal(kLeast, key, value);
+    };
+    EXPECT_THAT(refused("flight.frames", "0"),
+                StartsWith("--override flight.frames: [flight] frames = 0: out of range"));
+    EXPECT_THAT(refused("viewport.height", "-4"), HasSubstr("height = -4: out of range"));
+    EXPECT_THAT(refused("run.repetitions", "\"many\""), HasSubstr("text where a whole number"));
+    EXPECT_THAT(refused("measure.economy", "[500]"),
+                StartsWith("--override measure.economy: [measure] economy"));
+    EXPECT_THAT(refused("flight.speeed", "3"),
+                StartsWith("--override flight.speeed: [flight] \"speeed\" is not a key"));
+    EXPECT_THAT(refused("wether.rain", "3"), HasSubstr("\"wether\" is not a key"));
+    EXPECT_THAT(refused("flight.kind.x", "3"), HasSubstr("\"kind\" is no table of the scenario"));
+    EXPECT_THAT(refused("flight.frames", "many"), HasSubstr("many\" is no value of TOML; write"));
+    EXPECT_THAT(refused("flight.frames", "3\nx = 4"), HasSubstr("is no value of TOML"));
+    EXPECT_THAT(refused("flight.frames", ""), HasSubstr("is no value of TOML"));
 }
 
 TEST(Scenario, upsampling_is_read_and_what_it_does_not_admit_is_refused) {
@@ -430,7 +472,8 @@ TEST(Scenario, kept_knob_values_are_read_and_each_mistake_is_told) {
         {"[equal]\nerror_px = 0\n", "error_px = 0: out of range"},
         {"[equal]\nerror_px = 1\n", "write [equal.knobs] with METHOD = VALUE"},
         {"[equal]\nerror_px = 1\n[equal.knobs]\nPgm = 1\n", "not the id of a method"},
-        {"[equal]\nerror_px = 1\n[equal.knobs]\npgm = [1, 2]\n", "pgm = [1, 2]: write the one value that shows the error"},
+        {"[equal]\nerror_px = 1\n[equal.knobs]\npgm = [1, 2]\n",
+         "pgm = [1, 2]: write the one value that shows the error"},
         {"[equal]\nerror_px = 1\n[equal.knobs]\npgm = 1\n[equal.off]\nmoon = 'far'\n",
          "[equal.off] \"moon\" is not a key of a scenario; known: pgm"},
         {"[equal]\nerror_px = 1\n[equal.knobs]\npgm = 1\n[equal.off]\npgm = 3\n",
