@@ -41,7 +41,7 @@ bool write_all(int descriptor, std::string_view text);
 struct ChildEnding {
     bool by_signal = false;
     int number = 0;  ///< of the signal, or the exit status
-    [[nodiscard]] bool well() const { return !by_signal && number == 0; }
+    [[nodiscard]] bool succeeded() const { return !by_signal && number == 0; }
     /// "segmentation fault (signal 11)", "the process exited with status 3"
     [[nodiscard]] std::string words() const;
 };

@@ -19,7 +19,7 @@ constexpr auto kWatchInterval = std::chrono::milliseconds(200);
 
 // What the child writes: one letter for the ending, the text, and a full stop that tells a whole
 // answer from one that was cut short.
-constexpr char kAnswered = 'a', kRefused = 'r', kNoMeans = 'm', kThrew = 't', kStop = '.';
+constexpr char kAnswered = 'a', kRefused = 'r', kEnvironment = 'm', kThrew = 't', kStop = '.';
 
 std::string answer_of(const std::function<std::string()>& work) {
     try {
@@ -27,7 +27,7 @@ std::string answer_of(const std::function<std::string()>& work) {
     } catch (const InputError& error) {
         return kRefused + std::string(error.what());
     } catch (const EnvironmentError& error) {
-        return kNoMeans + std::string(error.what());
+        return kEnvironment + std::string(error.what());
     } catch (const std::exception& error) {
         return kThrew + bounded(error.what());
     } catch (...) {
@@ -64,15 +64,15 @@ Answer run_isolated(double seconds, const std::function<std::string()>& work,
     const std::string text = read_all(file);
     // A child that answers and dies on its way out (a plugin's thread, say) has not kept its
     // promise either.
-    if (!child.ending().well() || text.size() < 2 || text.back() != kStop) {
+    if (!child.ending().succeeded() || text.size() < 2 || text.back() != kStop) {
         return {Ending::died, fmt::format("ended before it answered: {}", child.ending().words()),
-                child.ending().by_signal ? child.ending().number : 0};
+                child.ending().by_signal ? child.ending().number : 0, child.ending().words()};
     }
     const std::string message = text.substr(1, text.size() - 2);
     switch (text.front()) {
         case kAnswered: return {Ending::answered, message};
         case kRefused: return {Ending::refused, message};
-        case kNoMeans: return {Ending::no_means, message};
+        case kEnvironment: return {Ending::environment_error, message};
         default: return {Ending::threw, message};
     }
 }

@@ -8,18 +8,19 @@ namespace lodbench::base {
 
 /// How a piece of isolated work ended.
 enum class Ending {
-    answered,  ///< `text` is what the work returned
-    refused,   ///< the work threw InputError; `text` is its message
-    no_means,  ///< the work threw EnvironmentError; `text` is its message
-    threw,     ///< the work threw anything else; `text` is its message
-    died,      ///< a signal or an exit in the middle; `text` says which
-    timed_out  ///< killed at the limit; `text` says which
+    answered,           ///< `text` is what the work returned
+    refused,            ///< the work threw InputError; `text` is its message
+    environment_error,  ///< the work threw EnvironmentError; `text` is its message
+    threw,              ///< the work threw anything else; `text` is its message
+    died,               ///< a signal or an exit in the middle; `text` says which
+    timed_out           ///< killed at the limit; `text` says which
 };
 
 struct Answer {
     Ending ending = Ending::died;
     std::string text;
-    int signal = 0;  ///< that ended the child where it died of one
+    int signal = 0;            ///< that ended the child where it died of one
+    std::string died_of = {};  ///< where it died: "segmentation fault (signal 11)"
 };
 
 /// Runs `work` in a forked child for at most `seconds` and returns what it answered. `watch` is

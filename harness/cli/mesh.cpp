@@ -171,7 +171,7 @@ int run_mesh(const MeshOptions& options) {
     switch (answer.ending) {
         case Ending::answered: base::print("{}\n", answer.text); return run::kAllWell;
         case Ending::refused: throw InputError(answer.text);
-        case Ending::no_means: throw EnvironmentError(answer.text);
+        case Ending::environment_error: throw EnvironmentError(answer.text);
         case Ending::threw: base::tell("lodbench: {}", answer.text); return run::kCellFailed;
         case Ending::died:
         case Ending::timed_out: break;

@@ -162,7 +162,7 @@ CheckReport run_check(const Check& check, const Subject& subject, double time_li
             break;
         }
         case base::Ending::refused: throw InputError(answer.text);
-        case base::Ending::no_means: report.verdict = Verdict::skipped; break;
+        case base::Ending::environment_error: report.verdict = Verdict::skipped; break;
         case base::Ending::threw:
         case base::Ending::died:
         case base::Ending::timed_out: report.verdict = Verdict::failed; break;

@@ -14,6 +14,7 @@
 
 #include "api/error.h"
 #include "base/child_process.h"
+#include "base/isolated.h"
 #include "results/json.h"
 #include "run/last_words.h"
 #include "run/loader_log.h"
@@ -94,8 +95,8 @@ MethodInfo read_method(const Json::Value& json, const std::string& where) {
     return method;
 }
 
-/// In the child: opens the plugin and writes the listing.
-int tell(const fs::path& plugin, int listing, int output) {
+/// In the child: opens the plugin and lists it.
+std::string listing_of(const fs::path& plugin, int output) {
     // What a plugin prints belongs into no pipe that the user reads; and it may print without end.
     if (std::getenv("LODBENCH_LOADER_DEBUG") == nullptr) {
         dup2(output, STDOUT_FILENO);
@@ -107,19 +108,11 @@ int tell(const fs::path& plugin, int listing, int output) {
     const rlimit limit{kOutputLimit, kOutputLimit};
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit no_core{0, 0};
-    setrlimit(RLIMIT_CORE, &no_core);
-    Json::Value json;
-    json["methods"] = Json::arrayValue;
-    json["refusal"] = "";
-    try {
-        for (const MethodInfo& method : PluginLibrary(plugin).methods()) {
-            json["methods"].append(to_json(method));
-        }
-    } catch (const InputError& error) {
-        json["refusal"] = error.what();
+    Json::Value methods = Json::arrayValue;
+    for (const MethodInfo& method : PluginLibrary(plugin).methods()) {
+        methods.append(to_json(method));
     }
-    return base::write_all(listing, results::to_text(json)) ? 0 : 1;
+    return results::to_text(methods);
 }
 
 /// Where the plugin stands among those that lodbench is built with; last for any other.
@@ -210,28 +203,30 @@ PluginListing list_plugin(const fs::path& plugin, std::chrono::milliseconds time
         loader_log("{}", result.refusal);
         return result;
     };
-    const base::FileDescriptor listing = base::memory_file("lodbench-listing");
     const base::FileDescriptor output = base::memory_file("lodbench-output");
-    base::ChildProcess child([&] { return tell(plugin, listing.number(), output.number()); });
-    const auto deadline = std::chrono::steady_clock::now() + time_limit;
-    while (!child.wait(std::chrono::milliseconds(50))) {
-        if (std::chrono::steady_clock::now() < deadline) continue;
-        child.end();
-        return refuse(
-            fmt::format("it did not load within {} s{}; a constructor that runs while it is "
-                        "loaded does not end",
-                        double(time_limit.count()) / 1000, last_words(base::read_all(output))));
-    }
-    const std::string text = base::read_all(listing);
-    if (!child.ending().well() || text.empty()) {
-        return refuse(
-            fmt::format("while it was loaded: {}{}; look at the constructors that run then",
-                        child.ending().words(), last_words(base::read_all(output))));
+    const double seconds = double(time_limit.count()) / 1000;
+    const base::Answer answer =
+        base::run_isolated(seconds, [&] { return listing_of(plugin, output.number()); });
+    const std::string printed = last_words(base::read_all(output));
+    using base::Ending;
+    switch (answer.ending) {
+        case Ending::answered: break;
+        case Ending::refused: result.refusal = answer.text; return result;
+        case Ending::environment_error:
+        case Ending::threw: return refuse(answer.text + printed);
+        case Ending::died:
+            return refuse(
+                fmt::format("while it was loaded: {}{}; look at the constructors that run then",
+                            answer.died_of, printed));
+        case Ending::timed_out:
+            return refuse(
+                fmt::format("it did not load within {} s{}; a constructor that runs while it is "
+                            "loaded does not end",
+                            seconds, printed));
     }
     try {
-        const Json::Value json = results::parse_json(text, plugin.string());
-        result.refusal = results::get_string(json, "refusal", plugin.string());
-        for (const Json::Value& method : results::get_array(json, "methods", plugin.string())) {
+        const Json::Value methods = results::parse_json(answer.text, plugin.string());
+        for (const Json::Value& method : methods) {
             result.methods.push_back(read_method(method, plugin.string()));
         }
     } catch (const std::exception& error) {

@@ -143,7 +143,7 @@ results::CellResult result_of(const base::ChildEnding& ending, const std::string
         } catch (const InputError& error) {
             return ended(results::CellStatus::failed, error.what(), 0);
         }
-        if (!ending.well()) {
+        if (!ending.succeeded()) {
             result.cell.warnings.push_back(
                 fmt::format("after the result was written: {}", ending.words()));
         }

@@ -142,7 +142,7 @@ Raster read_isolated(const TerrainSource& source) {
     switch (answer.ending) {
         case base::Ending::answered: break;
         case base::Ending::refused: throw InputError(answer.text);
-        case base::Ending::no_means: throw EnvironmentError(answer.text);
+        case base::Ending::environment_error: throw EnvironmentError(answer.text);
         case base::Ending::threw:
             throw InputError(fmt::format("{}: reading it failed: {}; the file may be damaged", name,
                                          answer.text));

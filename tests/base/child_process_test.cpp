@@ -84,7 +84,7 @@ TEST(ChildProcess, takes_a_daemon_with_it_and_tells_of_it) {
         return 0;
     });
     finish(child);
-    EXPECT_TRUE(child.ending().well());
+    EXPECT_TRUE(child.ending().succeeded());
     EXPECT_TRUE(is_gone(daemon.await()));
     EXPECT_THAT(child.left_behind(),
                 testing::StartsWith("left 1 process behind, which was ended: base_test"));

@@ -28,8 +28,8 @@ TEST(Isolated, tells_an_answer_from_each_kind_of_refusal) {
     const Answer refused = ask([]() -> std::string { throw InputError("no such file"); });
     EXPECT_EQ(refused.ending, Ending::refused);
     EXPECT_EQ(refused.text, "no such file");
-    const Answer no_means = ask([]() -> std::string { throw EnvironmentError("no device"); });
-    EXPECT_EQ(no_means.ending, Ending::no_means);
+    const Answer environment_error = ask([]() -> std::string { throw EnvironmentError("no device"); });
+    EXPECT_EQ(environment_error.ending, Ending::environment_error);
     const Answer threw = ask([]() -> std::string { throw std::runtime_error("a refusal"); });
     EXPECT_EQ(threw.ending, Ending::threw);
     EXPECT_EQ(threw.text, "a refusal");
