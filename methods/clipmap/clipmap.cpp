@@ -247,17 +247,25 @@ private:
         tiles_missing_ = heights_->missing_tiles();
     }
 
-    /// As far as samples are in memory and the budget (texels) goes, which is lowered.
+    /// As far as samples are in memory and the budget (texels) goes, which is lowered. What is left
+    /// is asked for.
     void fill(int level, common::ToroidalWindow& window, std::int64_t& budget) {
         const std::int64_t side = window.samples();
         while (budget >= side) {
             const int lines = int(std::min(budget / side, side));
             const std::optional<common::LevelRect> strip = window.next_strip(lines);
-            if (!strip || !require(level, *strip)) return;
+            if (!strip || !require(level, *strip)) break;
             for (const common::WindowPiece& piece : window.pieces(*strip)) write(level, piece);
             window.fill(*strip);
             budget -= strip->area();
             texels_written_[std::size_t(level)] += strip->area();
+        }
+        if (!window.complete()) require_rest(level, window);
+    }
+    void require_rest(int level, common::ToroidalWindow window) {
+        while (const std::optional<common::LevelRect> strip = window.next_strip()) {
+            static_cast<void>(require(level, *strip));
+            window.fill(*strip);
         }
     }
 
@@ -313,10 +321,7 @@ private:
         for (int level = levels_ - 1; level >= finest_active_; --level) {
             common::ToroidalWindow window = windows_[std::size_t(level)];
             window.move_to(ahead[std::size_t(level)]);
-            while (const std::optional<common::LevelRect> strip = window.next_strip()) {
-                static_cast<void>(require(level, *strip));
-                window.fill(*strip);
-            }
+            require_rest(level, std::move(window));
         }
     }
 
@@ -417,7 +422,7 @@ constexpr ParamSpec kParams[] = {
                  "closed: the vertices of a ring's border stand on the coarser level's; open: gaps "
                  "stay"),
     boolean_param("culling", true, "leaves out blocks outside the view frustum"),
-    integer_param("texels_per_frame", 1 << 20, 1 << 10, 1 << 24,
+    integer_param("texels_per_frame", 1 << 22, 1 << 10, 1 << 24,
                   "texels that are written in a frame at most, coarse levels first; without limit "
                   "in lockstep"),
     integer_param("loader_threads", 2, 1, 16, "threads that read tiles"),

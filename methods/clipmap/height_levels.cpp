@@ -12,14 +12,17 @@ namespace lodbench::clipmap {
 
 namespace {
 
-// Tiles that are read and not yet taken: 1 MB of heights.
-constexpr std::size_t kMostReady = 64;
-
 /// All that windows of every level cover, twice: what is used in a frame never has to make room for
 /// what else is.
 int pool_size(const HeightLevelsOptions& options) {
     const int along = (options.window_samples + 2 * kTileCells - 1) / kTileCells + 1;
     return 2 * along * along * options.levels + 16;
+}
+
+/// Tiles that are read and not yet taken: of large windows many, or the frames would be what the
+/// disk waits for; 17 KB each.
+std::size_t most_ready(const HeightLevelsOptions& options) {
+    return std::size_t(std::max(64, pool_size(options) / 4));
 }
 
 /// The finest level that is small enough to be held.
@@ -40,7 +43,7 @@ HeightLevels::HeightLevels(const Terrain& terrain, const HeightLevelsOptions& op
       first_held_(std::min(first_held_level(terrain, options), options.levels - 1)),
       pool_(pool_size(options)),
       slots_(std::size_t(pool_size(options))),
-      loader_(terrain, options.loader_threads, kMostReady) {
+      loader_(terrain, options.loader_threads, most_ready(options)) {
     hold_coarse_levels();
 }
 
@@ -72,7 +75,7 @@ void HeightLevels::begin_frame() {
     ++frame_;
     missing_.clear();
     known_missing_.clear();
-    for (common::LoadedTile& loaded : loader_.take(kMostReady)) store(std::move(loaded));
+    for (common::LoadedTile& loaded : loader_.take(most_ready(options_))) store(std::move(loaded));
 }
 
 void HeightLevels::request_missing() {
