@@ -81,6 +81,25 @@ TEST(ClipmapTriangles, are_the_papers_without_culling_and_fewer_with_it) {
     }
 }
 
+TEST(ClipmapTriangles, have_no_area_where_a_closed_border_leaves_out_every_second_vertex) {
+    const auto terrain = ridged(254, 254);
+    for (const char* borders : {"closed", "open"}) {
+        Flight flight(terrain, "clipmap", "clipmap",
+                      {{"n", "63"}, {"culling", "false"}, {"borders", borders}});
+        const auto surface =
+            settled_surface(flight, camera_over(terrain->info(), {0.5, 0.5}, -1e4, 0, 0));
+        const int levels = int(flight.counter("levels_active"));
+        EXPECT_EQ(levels, 5);
+        int without_area = 0;
+        for (std::size_t i = 0; i < surface.vertices.size(); i += 3) {
+            const glm::vec3 &a = surface.vertices[i], &b = surface.vertices[i + 1],
+                            &c = surface.vertices[i + 2];
+            without_area += a == b || b == c || c == a;
+        }
+        EXPECT_EQ(without_area, std::string(borders) == "closed" ? (levels - 1) * 2 * 62 : 0);
+    }
+}
+
 TEST(ClipmapTriangles, culling_leaves_out_nothing_that_reaches_a_pixel) {
     const auto terrain = ridged(700, 513);
     std::mt19937 random(3);
