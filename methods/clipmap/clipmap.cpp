@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,7 +40,7 @@ using glm::vec4;
 }  // namespace block
 using block::ClipmapBlock;
 constexpr GLuint kBlockBinding = gl::kFirstFreeBinding;  // CLIPMAP_BINDING of clipmap.vert
-constexpr int kMostLevels = 32;
+constexpr std::size_t kMostLevels = 32;
 static_assert(offsetof(ClipmapBlock, viewers) == 16 * kMostLevels &&
               sizeof(ClipmapBlock) == 32 * kMostLevels);
 
@@ -296,8 +297,8 @@ private:
             const common::LevelRect around = coarser_around(samples);
             heights_->copy(level + 1, around, coarse_);
             const auto coarse = [&](int x, int y) {
-                return coarse_[std::size_t((y - around.low.y) * around.size().x +
-                                           (x - around.low.x))];
+                return coarse_[std::size_t(y - around.low.y) * std::size_t(around.size().x) +
+                               std::size_t(x - around.low.x)];
             };
             std::size_t i = 0;
             for (int y = samples.low.y; y < samples.high.y; ++y) {
@@ -321,7 +322,7 @@ private:
         for (int level = levels_ - 1; level >= finest_active_; --level) {
             common::ToroidalWindow window = windows_[std::size_t(level)];
             window.move_to(ahead[std::size_t(level)]);
-            require_rest(level, std::move(window));
+            require_rest(level, window);
         }
     }
 

@@ -60,7 +60,7 @@ void HeightLevels::hold_coarse_levels() {
                 std::copy_n(tile.begin() + std::ptrdiff_t(y) * kTileSamples, width,
                             finest.heights.begin() +
                                 std::ptrdiff_t(row * kTileCells + y) * finest.columns +
-                                column * kTileCells);
+                                std::ptrdiff_t(column) * kTileCells);
             }
         }
     }
@@ -162,7 +162,7 @@ std::span<const float> HeightLevels::from(int level, glm::ivec2 sample) {
             tile.level, tile.row, tile.column));
     }
     const glm::ivec2 within = sample - kTileCells * glm::ivec2(tile.column, tile.row);
-    return std::span(*heights).subspan(std::size_t(within.y * kTileSamples + within.x),
+    return std::span(*heights).subspan(std::size_t(within.y) * kTileSamples + std::size_t(within.x),
                                        std::size_t(kTileSamples - within.x));
 }
 

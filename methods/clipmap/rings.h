@@ -56,7 +56,8 @@ private:
 /// coarser level's vertices; the viewer is at most a step from its middle on each axis.
 [[nodiscard]] inline std::vector<glm::ivec2> ring_origins(const glm::dvec2& place,
                                                           const RingSize& size, int levels) {
-    const glm::dvec2 nearest = glm::floor((place - double((size.n() - 1) / 2)) / 2.0 + 0.5);
+    const int half = (size.n() - 1) / 2;
+    const glm::dvec2 nearest = glm::floor((place - double(half)) / 2.0 + 0.5);
     std::vector<glm::ivec2> origins{2 * glm::ivec2(nearest)};
     // A square lies m or m - 1 steps of the next level inside of that level's. Integers alone, from
     // the finest level on: no rounding can part two rings.

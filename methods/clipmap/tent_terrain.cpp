@@ -219,7 +219,7 @@ private:
                 const auto row =
                     made.tile_rows.begin() + std::ptrdiff_t(std::min(y, last_row)) * made.columns;
                 for (int x = 0; x < kTileSamples; ++x) {
-                    heights[std::size_t(y * kTileSamples + x)] =
+                    heights[std::size_t(y) * kTileSamples + std::size_t(x)] =
                         row[std::min(column * kTileCells + x, made.columns - 1)];
                 }
             }

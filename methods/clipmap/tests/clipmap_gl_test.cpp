@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ostream>
 #include <random>
 #include <string>
 #include <thread>
@@ -250,6 +251,10 @@ struct Walk {
     double longest_step;  ///< metres
     int jumps_of_100;
 };
+
+void PrintTo(const Walk& walk, std::ostream* stream) {
+    *stream << walk.name;
+}
 
 class ClipmapWalk : public ::testing::TestWithParam<Walk> {};
 INSTANTIATE_TEST_SUITE_P(all, ClipmapWalk,

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <random>
 #include <string>
 
@@ -68,6 +69,9 @@ struct Walk {
     int longest_step;
     int teleports_of_100;
 };
+void PrintTo(const Walk& walk, std::ostream* stream) {
+    *stream << walk.name;
+}
 constexpr Walk kWalks[] = {
     {"slow", 1, 0}, {"fast", 9, 0}, {"faster than a window", 40, 0}, {"with teleports", 3, 10}};
 
