@@ -12,10 +12,10 @@
 #include <set>
 #include <thread>
 
-#include "gl/frame_blocks.h"
 #include "run/frame_measurer.h"
 #include "run/mesh_export.h"
 #include "support/fake_terrain.h"
+#include "support/loose_method.h"
 #include "support/mesh_tools.h"
 #include "support/method_fixture.h"
 
@@ -247,46 +247,10 @@ TEST_P(WhileTilesAreMissing, what_stands_in_for_them_is_watertight_and_covers_th
     EXPECT_EQ(flight.counter("ancestors_drawn"), 0);
 }
 
-/// A method over a terrain that is not in memory.
-class Loose {
+class Loose : public LooseMethod {
 public:
     Loose(const Terrain& terrain, const std::string& method, const Settings& settings)
-        : terrain_(terrain), library_(std::string(LODBENCH_PLUGINS) + "/tile_quadtree.so") {
-        const run::MethodInfo info =
-            run::find_method({{"tile_quadtree.so", library_.methods(), ""}}, method, "test");
-        method_ = library_.create(method, run::make_params(info, settings, "test"));
-        frozen_ = gl::Buffer(device_, "test: Frozen", sizeof(gl::Frozen));
-        method_->prepare(terrain, device_);
-        method_->upload(device_);
-    }
-    ~Loose() { method_->release(device_); }
-    Loose(const Loose&) = delete;
-    Loose& operator=(const Loose&) = delete;
-
-    /// Seconds.
-    double select(const Camera& camera) {
-        const gl::Frozen block = gl::make_frozen(camera, terrain_.info());
-        frozen_.write(0, sizeof block, &block);
-        frozen_.bind_uniform(gl::kFrozenBinding);
-        const auto begin = std::chrono::steady_clock::now();
-        method_->select(camera, {});
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    }
-    [[nodiscard]] double counter(const std::string& name) const {
-        for (const auto& [key, value] : method_->counters()) {
-            if (key == name) return value;
-        }
-        throw ContractError("no counter " + name);
-    }
-    [[nodiscard]] Method& method() { return *method_; }
-
-private:
-    const Terrain& terrain_;
-    platform::Context context_{""};
-    gl::Device device_;
-    run::PluginLibrary library_;
-    gl::Buffer frozen_;
-    run::PluginLibrary::MethodPointer method_;
+        : LooseMethod(terrain, "tile_quadtree", method, settings) {}
 };
 
 /// Rough everywhere, so that all in view is wanted at full resolution.
