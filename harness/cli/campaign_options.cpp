@@ -79,7 +79,7 @@ void CampaignOptions::add_to(CLI::App& command) {
     add_repeated(command, "--method,-m", request.methods,
                  "method to fly; none: as the scenario says");
     add_repeated(command, "--set", request.settings,
-                 "METHOD.PARAMETER=VALUE[,VALUE...]; several values are swept");
+                 "[METHOD.]PARAM=VALUE[,VALUE...]; several values are swept");
     out_option_ = command.add_option(
         "--out,-o", request.out,
         "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
@@ -104,7 +104,19 @@ void CampaignOptions::require_folder_to_resume() const {
     }
 }
 
+void CampaignOptions::name_settings() {
+    for (std::string& text : request.settings) {
+        const run::Setting setting = run::parse_setting(text, "[METHOD.]PARAM=VALUE[,VALUE...]");
+        if (!setting.method.empty()) continue;
+        if (request.methods.size() != 1) {
+            throw InputError(fmt::format("--set {0}: of which method? Write METHOD.{0}", text));
+        }
+        text = request.methods.front() + "." + text;
+    }
+}
+
 void CampaignOptions::finish() {
+    name_settings();
     if (*seed_option_) {
         request.overrides.set("run.seed", fmt::format("{}", seed_),
                               fmt::format("--seed {}", seed_));

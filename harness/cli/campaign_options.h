@@ -32,7 +32,10 @@ public:
     void add_resume(CLI::App& command, const char* help);
     /// Throws InputError for --resume without --out.
     void require_folder_to_resume() const;
-    /// Once the command line is read: seed, command line and, where none is named, the folder,
+    /// Once the command line is read: of settings without a method, that one of --method. Throws
+    /// InputError where several or none are asked for.
+    void name_settings();
+    /// The same, and seed, command line and, where none is named, the folder,
     /// which is made. Throws EnvironmentError.
     void finish();
     /// Runs `command` so that Ctrl-C ends it in good order: the cell that is flown is given up, and

@@ -13,7 +13,7 @@ void add_cell(CLI::App& app, int& status) {
         int spec = -1, signs = -1, result = -1;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("cell", "Flies one cell for `lodbench run`.")->group("");
+    CLI::App* command = app.add_subcommand("cell", "Fly one cell for `lodbench run`")->group("");
     command->add_option("--spec", options->spec, "descriptor of the specification")->required();
     command->add_option("--signs", options->signs, "descriptor of the shared signs of life")
         ->required();

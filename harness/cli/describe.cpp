@@ -58,7 +58,7 @@ int describe(const Options& options) {
 void add_describe(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
-        app.add_subcommand("describe", "Shows a method's paper, parameters and promises.");
+        app.add_subcommand("describe", "Show a method's paper, parameters and promises");
     command->add_option("METHOD", options->method, "id of the method")->required();
     add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--json", options->json, "JSON for programs");

@@ -104,8 +104,8 @@ void add_economy(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "economy",
-        "Compares the triangles that methods draw in a frame with a near-minimal triangulation of "
-        "the same error.");
+        "Compare the triangles that methods draw in a frame with a near-minimal triangulation of "
+        "the same error");
     command->add_option("SCENARIO", options->request.scenarios,
                         "scenario files; none: the demo over Puget Sound");
     add_repeated(*command, "--frame", options->frames, "frame to compare")->required();

@@ -78,7 +78,7 @@ int list_methods(const Options& options) {
 void add_list(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
-        app.add_subcommand("list", "Shows the methods that were found, and the devices.");
+        app.add_subcommand("list", "Show the methods that were found, and the devices");
     add_plugin_dirs(*command, options->plugin_dirs);
     command->add_flag("--devices", options->devices, "the EGL devices instead, for --device");
     command->add_flag("--json", options->json, "JSON for programs");

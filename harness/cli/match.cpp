@@ -198,8 +198,8 @@ void add_match(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "match",
-        "Finds each method's knob value at which measured error, triangles or frame time meet a "
-        "target, then flies all of them there.");
+        "Find each method's knob value at which measured error, triangles or frame time meet a "
+        "target, then fly all of them there");
     command->add_option("SCENARIO", options->request.scenarios,
                         "scenario file; none: the demo over Puget Sound");
     command->add_option("--error", options->error, "pixel error in pixels, as 1px");

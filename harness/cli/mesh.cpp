@@ -192,8 +192,8 @@ void add_mesh(CLI::App& app, int& status) {
                                            "(binary PLY, world metres in double)");
     command->add_option("METHOD", options->method, "id of the method, see `lodbench list`")
         ->required();
-    command->add_option("--scenario", options->scenario,
-                        "scenario file; the demo's when not given");
+    command->add_option("SCENARIO", options->scenario,
+                        "scenario file; none: the demo over Puget Sound");
     command->add_option("--frame", options->frame, "index on the flight path, 0 when not given")
         ->check(CLI::Range(0, 999999));
     command->add_option("-o,--out", options->out, "file to write, whole or not at all")->required();

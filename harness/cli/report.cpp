@@ -98,7 +98,7 @@ void write(const ReportOptions& options) {
 void add_report(CLI::App& app, int& /*status*/) {
     const auto options = std::make_shared<ReportOptions>();
     CLI::App* command =
-        app.add_subcommand("report", "Writes results folders as one HTML page that opens offline.");
+        app.add_subcommand("report", "Write results folders as one HTML page that opens offline");
     command
         ->add_option("DIR", options->folders,
                      "results folders, as `lodbench run --out` writes them")

@@ -76,7 +76,7 @@ void add_run(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "run",
-        "Flies scenarios with methods, each cell in a process of its own, and writes the results.");
+        "Fly scenarios with methods, each cell in a process of its own, and write the results");
     command->add_option("SCENARIO", options->request.scenarios,
                         "scenario files; none: the demo over Puget Sound");
     options->add_to(*command);

@@ -100,6 +100,7 @@ void spread_knobs(Options& options, const std::vector<run::PluginListing>& plugi
 int sweep(Options& options) {
     const results::ErrorMetric metric = read_metric(options.metric);
     std::map<std::string, std::string> knobs;
+    options.name_settings();
     spread_knobs(options, find_plugins(options.request.plugin_dirs), knobs);
     options.request.overrides.set("measure.truth", "true", "sweep");
     options.require_folder_to_resume();
@@ -127,8 +128,8 @@ void add_sweep(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "sweep",
-        "Flies each method over its quality knob, and says which settings no other beats in "
-        "measured error and frame time.");
+        "Fly each method over its quality knob, and say which settings no other beats in "
+        "measured error and frame time");
     command->add_option("SCENARIO", options->request.scenarios,
                         "scenario files; none: the demo over Puget Sound");
     options->add_to(*command);

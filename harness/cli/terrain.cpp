@@ -8,7 +8,7 @@
 namespace lodbench::cli {
 
 void add_terrain(CLI::App& app, int& status) {
-    CLI::App& command = *app.add_subcommand("terrain", "Looks at, imports and makes terrains");
+    CLI::App& command = *app.add_subcommand("terrain", "Look at, import and make terrains");
     command.require_subcommand(1);
     add_terrain_info(command);
     add_terrain_import(command);

@@ -142,9 +142,9 @@ void print(const TerrainText& text, bool json) {
 void add_terrain_info(CLI::App& parent) {
     const auto options = std::make_shared<TerrainOptions>();
     CLI::App& command = *parent.add_subcommand(
-        "info", "Size, height range, spacing, extent, voids and checksum of a terrain");
+        "info", "Show size, height range, spacing, extent, voids and checksum of a terrain");
     auto* file = command.add_option("FILE", options->source.file,
-                                    "Elevation model, image, raw file or tiled store (.tiles)");
+                                    "elevation model, image, raw file or tiled store (.tiles)");
     auto* form = command.add_option("--synthetic", options->source.synthetic, "A synthetic form");
     file->excludes(form);
     add_shape(command, *options);

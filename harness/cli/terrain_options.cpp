@@ -16,17 +16,17 @@ namespace lodbench::cli {
 
 void add_overrides(CLI::App& command, TerrainOptions& options) {
     terrain::TerrainSource& source = options.source;
-    command.add_option("--spacing", options.spacing, "Metres between samples, both axes");
-    command.add_option("--spacing-x", source.spacing_x, "Metres between columns");
-    command.add_option("--spacing-y", source.spacing_y, "Metres between rows");
-    command.add_option("--origin-x", source.origin_x, "World x of the south-west sample, metres");
-    command.add_option("--origin-y", source.origin_y, "World y of the south-west sample, metres");
-    command.add_flag("--json", options.json, "One JSON object on standard output");
+    command.add_option("--spacing", options.spacing, "metres between samples, both axes");
+    command.add_option("--spacing-x", source.spacing_x, "metres between columns");
+    command.add_option("--spacing-y", source.spacing_y, "metres between rows");
+    command.add_option("--origin-x", source.origin_x, "world x of the south-west sample, metres");
+    command.add_option("--origin-y", source.origin_y, "world y of the south-west sample, metres");
+    command.add_flag("--json", options.json, "one JSON object on standard output");
 }
 
 void add_file_overrides(CLI::App& command, TerrainOptions& options) {
     terrain::TerrainSource& source = options.source;
-    command.add_option("--vertical-scale", source.vertical_scale, "Metres per unit of the file")
+    command.add_option("--vertical-scale", source.vertical_scale, "metres per unit of the file")
         ->check([](const std::string& text) {
             // As in a scenario: scaled by 0, every terrain is flat.
             const double scale = std::strtod(text.c_str(), nullptr);
@@ -34,14 +34,14 @@ void add_file_overrides(CLI::App& command, TerrainOptions& options) {
                        ? std::string()
                        : "the scale is " + text + ": expected a finite number, not 0";
         });
-    command.add_option("--vertical-offset", source.vertical_offset, "Metres, added after scaling");
-    command.add_option("--no-data", source.no_data, "Value of samples without data; may be nan");
+    command.add_option("--vertical-offset", source.vertical_offset, "metres, added after scaling");
+    command.add_option("--no-data", source.no_data, "value of samples without data; may be nan");
 }
 
 void add_shape(CLI::App& command, TerrainOptions& options) {
     terrain::TerrainSource& source = options.source;
-    command.add_option("--rows", source.rows, "Rows of a synthetic terrain")->capture_default_str();
-    command.add_option("--columns", source.columns, "Columns of a synthetic terrain")
+    command.add_option("--rows", source.rows, "rows of a synthetic terrain")->capture_default_str();
+    command.add_option("--columns", source.columns, "columns of a synthetic terrain")
         ->capture_default_str();
     add_seed(command, source.seed, "Seed of a synthetic terrain");
     add_repeated(command, "--set", options.settings,

@@ -60,14 +60,14 @@ void add_terrain_verify(CLI::App& parent, int& status) {
     const auto options = std::make_shared<VerifyOptions>();
     CLI::App& command = *parent.add_subcommand(
         "verify",
-        "Reads every tile of a store and compares it with checksum, summary, neighbours and finer "
+        "Read every tile of a store and compare it with checksum, summary, neighbours and finer "
         "levels; status 1 where one is damaged");
-    command.add_option("FILE", options->file, "Tiled store (.tiles)")->required();
-    command.add_option("--most", options->most, "Faults that are put in words")
+    command.add_option("FILE", options->file, "tiled store (.tiles)")->required();
+    command.add_option("--most", options->most, "faults that are put in words")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    command.add_flag("--cold", options->cold, "From the disk, not from what the system holds");
-    command.add_flag("--json", options->json, "One JSON object on standard output");
+    command.add_flag("--cold", options->cold, "from the disk, not from what the system holds");
+    command.add_flag("--json", options->json, "one JSON object on standard output");
     command.callback([options, &status] { status = run(*options); });
 }
 

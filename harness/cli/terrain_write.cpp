@@ -23,7 +23,7 @@ struct WriteOptions : TerrainOptions {
 
 void add_step(CLI::App& command, WriteOptions& options) {
     command.add_option("--step", options.step,
-                       "Tiled stores: round heights to multiples of so many metres and keep 16 "
+                       "tiled stores: round heights to multiples of so many metres and keep 16 "
                        "bits of each; float32 without");
 }
 
@@ -73,10 +73,9 @@ void add_terrain_import(CLI::App& parent) {
     const auto options = std::make_shared<WriteOptions>();
     options->upsampling.factor = 1;
     CLI::App& command = *parent.add_subcommand(
-        "import",
-        "Reads a terrain, fills its voids and writes it as a tiled store or as raw heights");
+        "import", "Read a terrain, fill its voids and write it as a tiled store or as raw heights");
     command
-        .add_option("FILE", options->source.file, "Elevation model, image, raw file or tiled store")
+        .add_option("FILE", options->source.file, "elevation model, image, raw file or tiled store")
         ->required();
     add_output(command, *options);
     add_step(command, *options);
@@ -89,8 +88,8 @@ void add_terrain_synth(CLI::App& parent) {
     const auto options = std::make_shared<WriteOptions>();
     options->upsampling.factor = 1;
     CLI::App& command =
-        *parent.add_subcommand("synth", "Makes a synthetic terrain and writes its heights");
-    command.add_option("NAME", options->source.synthetic, "The form")->required();
+        *parent.add_subcommand("synth", "Make a synthetic terrain and write its heights");
+    command.add_option("NAME", options->source.synthetic, "the form")->required();
     add_output(command, *options);
     add_step(command, *options);
     add_shape(command, *options);
@@ -104,21 +103,21 @@ void add_terrain_upsample(CLI::App& parent) {
     terrain::Upsampling& upsampling = options->upsampling;
     CLI::App& command = *parent.add_subcommand(
         "upsample",
-        "Makes a larger terrain through the samples of a smaller one (bicubic), as a tiled store");
+        "Make a larger terrain through the samples of a smaller one (bicubic), as a tiled store");
     command
-        .add_option("FILE", options->source.file, "Elevation model, image, raw file or tiled store")
+        .add_option("FILE", options->source.file, "elevation model, image, raw file or tiled store")
         ->required();
     command.add_option("-o,--output", options->output, "OUT.tiles")->required();
     command
         .add_option("--factor", upsampling.factor,
-                    "The result has (rows - 1) * factor + 1 rows, columns likewise")
+                    "the result has (rows - 1) * factor + 1 rows, columns likewise")
         ->capture_default_str();
     command.add_option("--fractal", upsampling.fractal_amplitude,
-                       "Metres of noise between the samples: so much halfway, less nearer to them; "
+                       "metres of noise between the samples: so much halfway, less nearer to them; "
                        "the factor is a power of two then");
     add_seed(command, upsampling.seed, "Seed of the noise");
-    command.add_option("--rows", upsampling.rows, "Rows that are kept, from the north");
-    command.add_option("--columns", upsampling.columns, "Columns that are kept, from the west");
+    command.add_option("--rows", upsampling.rows, "rows that are kept, from the north");
+    command.add_option("--columns", upsampling.columns, "columns that are kept, from the west");
     add_step(command, *options);
     add_overrides(command, *options);
     add_file_overrides(command, *options);

@@ -185,7 +185,7 @@ int run_validate(const ValidateOptions& options) {
 void add_validate(CLI::App& app, int& status) {
     const auto options = std::make_shared<ValidateOptions>();
     CLI::App* command = app.add_subcommand(
-        "validate", "Put a plugin's methods to the promises that every method makes");
+        "validate", "Test a plugin's methods against the promises that every method makes");
     command->add_option("PLUGIN", options->plugin, "the plugin's file");
     command->add_option("--method", options->method, "only this method of the plugin");
     add_repeated(*command, "--test", options->tests, "only this test");

@@ -39,7 +39,7 @@ struct CommandSetting {
 };
 
 CommandSetting read_setting(const std::string& text) {
-    constexpr const char* kForm = "METHOD.PARAMETER=VALUE[,VALUE...]";
+    constexpr const char* kForm = "METHOD.PARAM=VALUE[,VALUE...]";
     const Setting setting = parse_setting(text, kForm);
     if (setting.method.empty()) throw InputError(fmt::format("--set {}: expected {}", text, kForm));
     return {setting.method, setting.name, split_values(setting.value), "--set " + text};

@@ -19,7 +19,7 @@ namespace lodbench::run {
 struct RunRequest {
     std::vector<std::filesystem::path> scenarios;  ///< files; empty: the demo
     std::vector<std::string> methods;              ///< ids; empty: as the scenario says
-    std::vector<std::string> settings;             ///< "METHOD.PARAMETER=VALUE[,VALUE...]"
+    std::vector<std::string> settings;             ///< "METHOD.PARAM=VALUE[,VALUE...]"
     std::filesystem::path out;
     std::filesystem::path views;  ///< where views of the terrain are kept between campaigns; "": not
     std::vector<std::filesystem::path> plugin_dirs;

@@ -170,7 +170,7 @@ TEST(BrokenPlugins, that_hang_cost_a_mesh_its_time_limit) {
     const ScratchFolder folder;
     const fs::path out = folder.path() / "loops.ply";
     const Finished finished = run_lodbench(
-        {"mesh", "loops", "--scenario", tiny_scenario(folder.path(), "").string(), "--plugin-dir",
+        {"mesh", "loops", tiny_scenario(folder.path(), "").string(), "--plugin-dir",
          broken_plugin_folder("loops"), "--out", out.string(), "--time-limit", "3"},
         folder.path());
     EXPECT_EQ(finished.status, 3) << finished.output;

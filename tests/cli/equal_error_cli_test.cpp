@@ -127,7 +127,7 @@ TEST_F(EqualError, a_value_that_does_not_fit_is_refused_with_its_line) {
 TEST_F(EqualError, a_mesh_is_that_of_the_kept_value) {
     const auto vertices = [&](const std::string& name, const Arguments& more) {
         Arguments arguments = {
-            "mesh",    "lindstrom", "--scenario", (folder_.path() / "small.toml").string(),
+            "mesh",    "lindstrom", (folder_.path() / "small.toml").string(),
             "--frame", "3",         "-o",         out(name),
             "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());

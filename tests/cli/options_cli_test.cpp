@@ -31,9 +31,29 @@ TEST(CommandLine, a_repeatable_option_leaves_what_follows_its_value_alone) {
     const std::string out = (folder.path() / "m.ply").string();
     const Finished mesh =
         run_lodbench({"mesh", "--plugin-dir", plugins, "--set", "template.step=4", "template",
-                      "--scenario", tiny_scenario(folder.path(), "").string(), "-o", out},
+                      tiny_scenario(folder.path(), "").string(), "-o", out},
                      folder.path());
     EXPECT_EQ(mesh.status, 0) << mesh.output;
+}
+
+TEST(CommandLine, a_setting_without_a_method_is_of_the_one_that_is_asked_for) {
+    const ScratchFolder folder;
+    const std::string scenario = tiny_scenario(folder.path(), "repetitions = 1\n").string();
+    const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {
+            "run", scenario, "--no-truth", "--out", folder.path() / out, "--set", "step=4"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_lodbench(arguments, folder.path());
+    };
+    const Finished one = run("one", {"--method", "template"});
+    EXPECT_EQ(one.status, 0) << one.output;
+    EXPECT_EQ(cells_of(folder.path() / "one").at(0)["cell"], "template__step=4__tiny__r0");
+    for (const std::vector<std::string>& methods :
+         {std::vector<std::string>{}, {"--method", "template", "--method", "full-grid"}}) {
+        const Finished many = run("many", methods);
+        EXPECT_EQ(many.status, 2);
+        EXPECT_THAT(many.output, HasSubstr("--set step=4: of which method? Write METHOD.step=4"));
+    }
 }
 
 TEST(CommandLine, an_unknown_method_is_refused_alike_by_every_command) {
@@ -138,8 +158,7 @@ TEST(OutputFile, a_missing_folder_is_named_and_what_is_no_regular_file_stays) {
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "").string();
     const auto mesh = [&](const std::string& out) {
-        return run_lodbench({"mesh", "full-grid", "--scenario", scenario, "-o", out},
-                            folder.path());
+        return run_lodbench({"mesh", "full-grid", scenario, "-o", out}, folder.path());
     };
     const Finished missing = mesh((folder.path() / "none" / "m.ply").string());
     EXPECT_EQ(missing.status, 4);

@@ -155,7 +155,7 @@ TEST_P(Truth, screen_error_is_what_an_independent_program_finds_on_the_exported_
             SCOPED_TRACE(fmt::format("{}, frame {}", method, frame));
             const FrameTexts& row = rows[std::size_t(frame)];
             ASSERT_EQ(number_in(row, "frame"), frame);
-            const Outcome made = lodbench(fmt::format("mesh {} --frame {} --scenario {} -o {}",
+            const Outcome made = lodbench(fmt::format("mesh {} --frame {} {} -o {}",
                                                       method, frame, flight, file("m.ply")));
             ASSERT_EQ(made.status, 0) << made.output;
             const Outcome checked = check_truth(file("m.ply"), file("window.raw"));
@@ -216,7 +216,7 @@ protected:
                                 "heading = 0\npitch = -90\n",
                                 near, kWidth, kViewportHeight, kX, kY, kHeight, kX, kY));
         const Outcome drawn =
-            lodbench("mesh full-grid --scenario " + file("down.toml") + " -o " + file("m.ply"));
+            lodbench("mesh full-grid " + file("down.toml") + " -o " + file("m.ply"));
         ASSERT_EQ(drawn.status, 0) << drawn.output;
     }
     /// Lays the true plane at another height than the drawn one.

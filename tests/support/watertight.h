@@ -76,7 +76,7 @@ protected:
         const std::string path = scenario(ground.terrain, ground.from, ground.to);
         const Outcome made = lodbench(
             fmt::format("mesh {} --before-clipping --set culling=false --set tau={} {} --frame {} "
-                        "--scenario {} -o {}",
+                        "{} -o {}",
                         method, tau, settings, frame, path, file("m.ply")));
         ASSERT_EQ(made.status, 0) << made.output;
         const Outcome checked = check_mesh(file("m.ply") + " --watertight --covers-terrain");
@@ -90,7 +90,7 @@ protected:
                           const Ground& ground, int segments) {
         const std::string far = scenario(ground.terrain, "[0, 0, 9e7]", "[0, 0, 1e8]", -90);
         const Outcome made = lodbench(fmt::format(
-            "mesh {} --before-clipping --set culling=false --set tau=1000 {} --scenario {} -o {}",
+            "mesh {} --before-clipping --set culling=false --set tau=1000 {} {} -o {}",
             method, settings, far, file("m.ply")));
         ASSERT_EQ(made.status, 0) << made.output;
         const Outcome checked = check_mesh(
