@@ -16,12 +16,6 @@ pkg_check_modules(jsoncpp REQUIRED IMPORTED_TARGET GLOBAL jsoncpp)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET GLOBAL stb)
 # The font of the pictures' text, which is built into the program.
 find_file(LODBENCH_FONT DejaVuSans.ttf PATHS /usr/share/fonts PATH_SUFFIXES truetype/dejavu dejavu REQUIRED)
-# The plots of the report, which are built into the program too.
-find_file(LODBENCH_CHART_JS chart.min.js PATHS /usr/share/javascript PATH_SUFFIXES chart.js NO_DEFAULT_PATH)
-if(NOT LODBENCH_CHART_JS)
-  message(FATAL_ERROR "chart.min.js was not found below /usr/share/javascript: install Debian's package "
-                      "libjs-chart.js, or name the file of Chart.js 3 with -DLODBENCH_CHART_JS=FILE")
-endif()
 if(LODBENCH_WITH_GDAL)
   find_package(GDAL REQUIRED)
 endif()

@@ -16,8 +16,9 @@ from report_page import cell, economy, flight, match, needed, png, report, searc
 
 BINARY = sys.argv.pop(1)
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
-CHART = "Chart.getChart(document.querySelector('#set1-curve-wall_ms canvas'))"
-VISIBLE = f"{CHART}.data.datasets.filter((_, i) => {CHART}.isDatasetVisible(i)).length"
+# Of the drawing that a plot shows, the groups of marks that are visible.
+VISIBLE = ("[...document.querySelectorAll('#set1-curve-wall_ms > svg [data-toggle]')]"
+           ".filter((g) => g.getClientRects().length && g.getBoundingClientRect().width > 0).length")
 
 
 class Shown(unittest.TestCase):
@@ -52,12 +53,13 @@ class Shown(unittest.TestCase):
                     self.browser.open(self.url, width, scheme)
                     self.assertTrue(self.browser.evaluate(
                         "document.documentElement.scrollWidth <= document.documentElement.clientWidth"))
-                    figures, canvases, blank = self.browser.evaluate(
-                        "[document.querySelectorAll('figure.plot').length, document.querySelectorAll('canvas').length, "
-                        "[...document.querySelectorAll('canvas')].filter((c) => c.getContext('2d').getImageData(0, 0, "
-                        "c.width, c.height).data.every((v) => v === 0)).length]")
+                    figures, shown, empty = self.browser.evaluate(
+                        "(() => { const shown = [...document.querySelectorAll('figure.plot > svg')]"
+                        ".filter((svg) => svg.getClientRects().length); "
+                        "return [document.querySelectorAll('figure.plot').length, shown.length, "
+                        "shown.filter((svg) => svg.getBoundingClientRect().height < 60).length]; })()")
                     self.assertGreater(figures, 10)
-                    self.assertEqual((canvases, blank), (figures, 0))
+                    self.assertEqual((shown, empty), (figures, 0))
                     self.check_silence()
 
     def test_on_paper_tables_fit_and_plots_stay_whole(self):
@@ -66,40 +68,58 @@ class Shown(unittest.TestCase):
             self.browser.open(self.url, paper, scheme)
             self.browser.call("Emulation.setEmulatedMedia", media="print",
                               features=[{"name": "prefers-color-scheme", "value": scheme}])
-            clipped, split, canvases, background = self.browser.evaluate(
+            clipped, split, shown, background = self.browser.evaluate(
                 "[[...document.querySelectorAll('.scroll, table, .legend')].filter((e) => "
                 "e.getBoundingClientRect().right > innerWidth || e.scrollHeight > e.clientHeight + 1 "
                 "&& getComputedStyle(e).overflowY !== 'visible').length, "
                 "[...document.querySelectorAll('figure, tr')].filter((e) => "
                 "getComputedStyle(e).breakInside !== 'avoid').length, "
-                "[...document.querySelectorAll('canvas')].filter((e) => e.offsetParent).length, "
+                "[...document.querySelectorAll('figure.plot')].filter((f) => [...f.querySelectorAll(':scope > svg')]"
+                ".filter((svg) => svg.getClientRects().length).length !== 1).length, "
                 "getComputedStyle(document.body).backgroundColor]")
-            self.assertEqual((clipped, split, canvases), (0, 0, 0))
+            self.assertEqual((clipped, split, shown), (0, 0, 0))
             self.assertEqual(background, "rgb(253, 253, 252)")
         pdf = self.browser.call("Page.printToPDF", printBackground=True)["data"]
         self.assertTrue(base64.b64decode(pdf).startswith(b"%PDF"))
 
     def test_an_axis_that_counts_is_linear_with_whole_ticks(self):
         self.browser.open(self.url, 1440, "light")
-        types, ticks = self.browser.evaluate(
-            "(() => { const s = Chart.getChart(document.querySelector('#set1-match-probes canvas')).scales; "
-            "return [[s.x.type, s.y.type], s.x.ticks.map((t) => t.value)]; })()")
-        self.assertEqual(types, ["linear", "logarithmic"])
-        self.assertEqual(ticks, [0, 1, 2])
+        logarithmic, ticks = self.browser.evaluate(
+            "(() => { const svg = [...document.querySelectorAll('#set1-match-probes > svg')]"
+            ".find((s) => s.getClientRects().length); const last = (axis) => axis.split(' ').pop(); "
+            "return [[last(svg.dataset.x), last(svg.dataset.y)], "
+            "[...svg.querySelectorAll('text.mid:not(.title)')].map((t) => t.textContent)]; })()")
+        self.assertEqual(logarithmic, ["0", "1"])
+        self.assertEqual(ticks, ["0", "1", "2"])
 
     def test_bars_leave_room_for_what_is_written_behind_their_whiskers(self):
         self.browser.open(self.url, 1440, "light")
         ends = self.browser.evaluate(
-            "Object.values(Chart.instances).filter((c) => c.config.type === 'bar' && c.scales.x.type === 'linear')"
-            ".map((c) => [c.scales.x.max, Math.max(...c.data.datasets.flatMap((d) => d.marks.map((m) => m[5] || m[0])))])")
+            "[...document.querySelectorAll('figure.bars > svg')].filter((s) => s.getClientRects().length).map((s) => "
+            "[s.getBoundingClientRect().right, Math.max(...[...s.querySelectorAll('.value')]"
+            ".map((t) => t.getBoundingClientRect().right))])")
         self.assertGreater(len(ends), 3)
         for end, most in ends:
-            self.assertGreater(end, 1.1 * most)
+            self.assertGreaterEqual(end, most)
+
+    def test_a_point_says_what_it_is(self):
+        self.browser.open(self.url, 1440, "light")
+        x, y = self.browser.evaluate(
+            "(() => { const svg = [...document.querySelectorAll('#set1-trade-time > svg')]"
+            ".find((s) => s.getClientRects().length); svg.scrollIntoView({block: 'center'}); "
+            "const ring = svg.querySelector('[data-toggle=\"method-2\"] .f').getBoundingClientRect(); "
+            "return [ring.x + ring.width / 2, ring.y + ring.height / 2]; })()")
+        words = "(() => { const tip = document.querySelector('.tip'); return tip.hidden ? '' : tip.textContent; })()"
+        self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+        self.assertRegex(self.browser.evaluate(words), r"^method-2 tau=[0-9.]+: [0-9.]+, [0-9.]+$")
+        self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=1, y=1)
+        self.assertEqual(self.browser.evaluate(words), "")
+        self.check_silence()
 
     def test_all_methods_may_be_hidden_and_shown_again(self):
         self.browser.open(self.url, 1440, "light")
         before = self.browser.evaluate(VISIBLE)
-        press_all = "document.querySelectorAll('[data-toggle]').forEach((box) => box.click())"
+        press_all = "document.querySelectorAll('input[data-toggle]').forEach((box) => box.click())"
         log_all = "document.querySelectorAll('[data-log]').forEach((box) => box.click())"
         self.browser.evaluate(press_all)
         self.assertEqual(self.browser.evaluate(VISIBLE), 0)
@@ -125,7 +145,7 @@ class Shown(unittest.TestCase):
                 self.assertEqual(self.browser.evaluate(VISIBLE), before - 3)
                 hidden = True
             if kind == "set1-trade-time":
-                axis = "Chart.getChart(document.querySelector('#set1-trade-time canvas')).scales.x.type"
+                axis = "document.querySelector('#set1-trade-time').classList.contains('log')"
                 first = self.browser.evaluate(axis)
                 self.browser.press(" ", 32, " ")
                 self.assertNotEqual(self.browser.evaluate(axis), first)

@@ -62,6 +62,11 @@ std::vector<double> Axis::ticks() const {
     return ticks;
 }
 
+std::string Axis::numbers() const {
+    return fmt::format("{} {} {} {} {}", low_, high_, begin_, end_,
+                       int(scale_ == Scale::logarithmic));
+}
+
 std::string tick_text(double value) {
     const double size = std::abs(value);
     if (size >= 1e9) return fmt::format("{:.3g}G", value / 1e9);

@@ -19,6 +19,8 @@ public:
 
     [[nodiscard]] double place(double value) const;
     [[nodiscard]] std::vector<double> ticks() const;
+    /// For the page's script, which finds values by their places: "LOW HIGH BEGIN END LOGARITHMIC".
+    [[nodiscard]] std::string numbers() const;
 
 private:
     Scale scale_;

@@ -61,7 +61,6 @@ void Page::open_details(const std::string& summary) {
 
 std::string Page::document(const std::string& title, const std::string& lead) const {
     const PageFile css = page_css();
-    const PageFile chart = chart_js();
     const PageFile script = page_js();
     std::string links;
     // Sections below a scenario only where there is one: many would hide it all.
@@ -75,11 +74,11 @@ std::string Page::document(const std::string& title, const std::string& lead) co
     std::string html = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-        "img-src data:; style-src '{}'; script-src '{}' '{}'; base-uri 'none'; "
+        "img-src data:; style-src '{}'; script-src '{}'; base-uri 'none'; "
         "form-action 'none'\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}</title>\n",
-        css.hash, chart.hash, script.hash, escape(title));
+        css.hash, script.hash, escape(title));
     html.append("<style>").append(css.text).append("</style>\n</head>\n<body>\n");
     html += fmt::format(
         "<a class=\"skip\" href=\"#content\">Skip to the results</a>\n<header>\n<h1>{}</h1>\n{}"
@@ -91,8 +90,6 @@ std::string Page::document(const std::string& title, const std::string& lead) co
     for (const Plot& plot : drawn_plots_) data["plots"].append(to_json(plot));
     html.append("</main>\n<script type=\"application/json\" id=\"report-data\">")
         .append(json_for_script(data))
-        .append("</script>\n<script>")
-        .append(chart.text)
         .append("</script>\n<script>")
         .append(script.text)
         .append("</script>\n</body>\n</html>\n");

@@ -26,12 +26,10 @@
 
 LODBENCH_EMBED("page_css", LODBENCH_PAGE_CSS);
 LODBENCH_EMBED("page_js", LODBENCH_PAGE_JS);
-LODBENCH_EMBED("chart_js", LODBENCH_CHART_JS);
 // NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 extern const char lodbench_page_css[], lodbench_page_css_end[];
 extern const char lodbench_page_js[], lodbench_page_js_end[];
-extern const char lodbench_chart_js[], lodbench_chart_js_end[];
 }
 // NOLINTEND(readability-identifier-naming)
 
@@ -65,11 +63,6 @@ PageFile page_css() {
 
 PageFile page_js() {
     return {between(lodbench_page_js, lodbench_page_js_end), policy_hash(LODBENCH_PAGE_JS_SHA256)};
-}
-
-PageFile chart_js() {
-    return {between(lodbench_chart_js, lodbench_chart_js_end),
-            policy_hash(LODBENCH_CHART_JS_SHA256)};
 }
 
 }  // namespace lodbench::report::html

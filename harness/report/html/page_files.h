@@ -14,6 +14,5 @@ struct PageFile {
 
 [[nodiscard]] PageFile page_css();
 [[nodiscard]] PageFile page_js();
-[[nodiscard]] PageFile chart_js();  ///< Chart.js, MIT licence, www.chartjs.org
 
 }  // namespace lodbench::report::html

@@ -64,9 +64,10 @@ std::string key_html(const Series& series) {
 
 std::string to_html(const Plot& plot) {
     if (!has_marks(plot)) return {};
-    std::string html = fmt::format("<figure class=\"plot {}\" id=\"{}\">\n<figcaption>{}",
-                                   plot.kind == Plot::Kind::bars ? "bars" : "curves",
-                                   escape(plot.id), escape(plot.title));
+    std::string html =
+        fmt::format("<figure class=\"plot {}{}\" id=\"{}\">\n<figcaption>{}",
+                    plot.kind == Plot::Kind::bars ? "bars" : "curves",
+                    plot.logarithmic ? " log" : "", escape(plot.id), escape(plot.title));
     if (plot.can_be_logarithmic) {
         html += fmt::format(
             " <label class=\"js-only\"><input type=\"checkbox\" data-log=\"{}\"{}> logarithmic"

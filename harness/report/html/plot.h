@@ -1,5 +1,6 @@
 #pragma once
-// A plot of the report: one description, from which come the static SVG and what the script draws.
+// A plot of the report: one description, from which come its SVGs and the values that the script
+// tells.
 
 #include <json/value.h>
 
@@ -20,7 +21,7 @@ struct Mark {
     double low = kAbsent;  ///< of a bar: its interval
     double high = kAbsent;
     std::string label = {};  ///< what it is of, where the series does not say
-    std::string value = {};  ///< what is written beside the point in the static SVG
+    std::string value = {};  ///< what is written beside the point
     bool ringed = false;     ///< on the Pareto front, or what was taken
 };
 
@@ -68,10 +69,10 @@ struct Plot {
 /// the greatest, so that no peak is lost. Marks that are not finite are dropped.
 [[nodiscard]] std::vector<Mark> thinned(const std::vector<Mark>& marks, std::size_t most);
 
-/// A figure with its caption and a static SVG; "" where there is nothing to draw.
+/// A figure with its caption and its SVGs; "" where there is nothing to draw.
 [[nodiscard]] std::string to_html(const Plot& plot);
 
-/// For the script.
+/// For the script: what stands where, exactly.
 [[nodiscard]] Json::Value to_json(const Plot& plot);
 
 /// A stroke of the series' colour and dash, for legends.

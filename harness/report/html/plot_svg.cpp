@@ -55,6 +55,11 @@ std::string dot(double x, double y, std::size_t shape, const std::string& title)
     return form + (shape % 4 == 0 ? "</circle>" : "</path>");
 }
 
+/// What the method's box in the legend shows and hides.
+std::string toggle(const std::string& method) {
+    return method.empty() ? "" : fmt::format(" data-toggle=\"{}\"", escape(method));
+}
+
 std::string x_axis(const Axis& axis, const std::string& title, double top, double bottom,
                    double left, double right) {
     std::string svg;
@@ -130,7 +135,8 @@ std::string series_svg(const Series& series, const Axis& x, const Axis& y) {
             if (!mark.value.empty()) dots += value_beside(left, top, shortened(mark.value));
         }
     }
-    std::string svg = fmt::format("<g class=\"{} d{}\">", classes(series), series.variant % 4);
+    std::string svg = fmt::format("<g class=\"{} d{}\"{}>", classes(series), series.variant % 4,
+                                  toggle(series.toggle));
     if (series.joined && !line.empty()) {
         svg += fmt::format("<path class=\"s\" d=\"{}\"><title>{}</title></path>", line,
                            escape(series.name));
@@ -154,7 +160,8 @@ Drawing draw_curves(const Plot& plot) {
     std::string svg =
         x_axis(x, plot.x_title, kTop, kBottom, kLeft, kRight) + y_axis(y, plot.y_title);
     for (const Series& series : plot.series) svg += series_svg(series, x, y);
-    return {kWidth, kHeight, svg};
+    return {kWidth, kHeight, svg,
+            fmt::format(" data-x=\"{}\" data-y=\"{}\"", x.numbers(), y.numbers())};
 }
 
 std::string bar_svg(const Mark& mark, const Axis& axis, double top, double thickness, double zero) {
@@ -177,6 +184,16 @@ std::string bar_svg(const Mark& mark, const Axis& axis, double top, double thick
                              behind + 5, middle + 4, infinite ? "∞" : tick_text(mark.x));
 }
 
+/// "lindstrom tau=1, P90: 12.5 (12 to 13)"
+std::string bar_title(const Category& category, const Series& series, const Mark& mark) {
+    std::string title = fmt::format("{}, {}: {}", category.label, series.name,
+                                    std::isinf(mark.x) ? "∞" : tick_text(mark.x));
+    if (std::isfinite(mark.low) && std::isfinite(mark.high)) {
+        title += fmt::format(" ({} to {})", tick_text(mark.low), tick_text(mark.high));
+    }
+    return title;
+}
+
 Drawing draw_bars(const Plot& plot) {
     const double thickness = plot.series.size() > 1 ? 11 : 15;
     const double step = thickness * double(plot.series.size()) + 8;
@@ -195,15 +212,18 @@ Drawing draw_bars(const Plot& plot) {
         const Category& category = plot.categories[i];
         const double top = kTop + step * double(i) + 4;
         svg += fmt::format(
-            "<g class=\"{}\"><text class=\"end\" x=\"{}\" y=\"{:.1f}\">{}<title>{}</title>"
+            "<g class=\"{}\"{}><text class=\"end\" x=\"{}\" y=\"{:.1f}\">{}<title>{}</title>"
             "</text>",
-            color_class(category.color), kBarLeft - 8, top + step / 2,
+            color_class(category.color), toggle(category.toggle), kBarLeft - 8, top + step / 2,
             escape(shortened(category.label)), escape(category.label));
         for (std::size_t s = 0; s < plot.series.size(); ++s) {
             svg += fmt::format("<g class=\"o{}\">", plot.series[s].variant);
             for (const Mark& mark : plot.series[s].marks) {
                 if (mark.y != double(i) || std::isnan(mark.x)) continue;
-                svg += bar_svg(mark, axis, top + thickness * double(s), thickness, zero);
+                svg +=
+                    fmt::format("<g>{}<title>{}</title></g>",
+                                bar_svg(mark, axis, top + thickness * double(s), thickness, zero),
+                                escape(bar_title(category, plot.series[s], mark)));
             }
             svg += "</g>";
         }
@@ -213,7 +233,7 @@ Drawing draw_bars(const Plot& plot) {
         svg += fmt::format("<path class=\"reference\" d=\"M{:.1f} {}V{:.1f}\"/>\n",
                            axis.place(*plot.reference), kTop, bottom);
     }
-    return {kWidth, bottom + 46, svg};
+    return {kWidth, bottom + 46, svg, {}};
 }
 
 }  // namespace
@@ -223,12 +243,22 @@ Drawing draw(const Plot& plot) {
 }
 
 std::string to_svg(const Plot& plot) {
-    const Drawing drawing = draw(plot);
-    return fmt::format(
-        "<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n",
-        drawing.width, drawing.height,
-        escape(fmt::format("{}: {} against {}", plot.title, plot.y_title, plot.x_title)),
-        drawing.shapes);
+    std::string svgs;
+    Plot drawn = plot;
+    for (const bool logarithmic : {false, true}) {
+        if (logarithmic != plot.logarithmic && !plot.can_be_logarithmic) continue;
+        drawn.logarithmic = logarithmic;
+        const Drawing drawing = draw(drawn);
+        const char* const kind = !plot.can_be_logarithmic ? ""
+                                 : logarithmic            ? " class=\"logarithmic\""
+                                                          : " class=\"linear\"";
+        svgs += fmt::format(
+            "<svg{} viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\"{}>\n{}</svg>\n",
+            kind, drawing.width, drawing.height,
+            escape(fmt::format("{}: {} against {}", plot.title, plot.y_title, plot.x_title)),
+            drawing.axes, drawing.shapes);
+    }
+    return svgs;
 }
 
 std::string key_svg(const Plot& plot, const Series& series, double x, double y) {

@@ -10,10 +10,12 @@ namespace lodbench::report::html {
 struct Drawing {
     double width = 0, height = 0;
     std::string shapes;
+    std::string axes;  ///< attributes that say where values stand; of curves
 };
 [[nodiscard]] Drawing draw(const Plot& plot);
 
-/// The plot as it stands on the page without a script.
+/// The plot as it stands on the page; where it can be logarithmic, so and linear, of which the
+/// figure's class shows one.
 [[nodiscard]] std::string to_svg(const Plot& plot);
 
 /// What a series looks like, from `x` on and around `y`.
