@@ -132,6 +132,20 @@ DrawnSurface::DrawnSurface(CapturedSurface&& surface, const TerrainInfo& info)
         skirts_high_ = glm::max(skirts_high_, glm::dvec2(vertex));
     }
     skirts_ = TriangleTree(std::move(skirts), low_, high_);
+    for (const TriangleTree* tree : {&surface_, &slivers_}) {
+        for (const glm::vec3& vertex : tree->vertices()) {
+            lowest_ = std::min(lowest_, double(vertex.z));
+            highest_ = std::max(highest_, double(vertex.z));
+        }
+    }
+}
+
+HeightInterval DrawnSurface::bounds() const {
+    if (lowest_ > highest_) return {kInfinity, -kInfinity};
+    // Displacements are rounded to float.
+    const double rounding =
+        0x1p-20 * (std::abs(origin_.z) + std::max(std::abs(lowest_), std::abs(highest_)));
+    return {origin_.z + lowest_ - rounding, origin_.z + highest_ + rounding};
 }
 
 DrawnSurface::Sorted DrawnSurface::sort_by_kind(std::vector<glm::vec3>&& vertices) const {

@@ -23,6 +23,7 @@
 
 #include "api/terrain.h"
 #include "measure/capture.h"
+#include "measure/reference_terrain.h"
 #include "measure/triangle_tree.h"
 
 namespace lodbench::measure {
@@ -75,6 +76,17 @@ public:
     /// the bit each time, and `height` minus h to the bit. Throws ContractError when a span's size
     /// is not rows * columns.
     void displacements(std::span<const float> heights, std::span<float> result) const;
+    /// The same at the samples of a rectangle alone, not parallel. `heights`: of all samples.
+    void displacements(std::span<const float> heights, const SampleRect& rect,
+                       std::span<float> result) const;
+
+    /// An interval that holds l_f wherever it is, metres: conservative. Low is above high where no
+    /// triangle is.
+    [[nodiscard]] HeightInterval bounds() const;
+    /// What it takes, about.
+    [[nodiscard]] std::size_t bytes() const {
+        return surface_.bytes() + slivers_.bytes() + skirts_.bytes();
+    }
 
     /// Whether the ray origin + t * direction is below l_f, strictly, for some t in [from, to];
     /// `from` is finite, `to` may be infinite. Exact, up to the rounding of double, against every
@@ -150,14 +162,20 @@ private:
                                                       const glm::dvec3& origin,
                                                       const glm::dvec3& direction, double from,
                                                       double to) const;
+    [[nodiscard]] std::size_t sample_index(int row, int column) const;
+    /// Of a rectangle's samples, rows `stride` apart.
+    void write_displacements(std::span<const float> heights, const SampleRect& rect, float* result,
+                             std::size_t stride) const;
     void draw_triangles(Tile& tile) const;
     void draw_neighbourhoods(Tile& tile) const;  ///< where no triangle was drawn
 
     TerrainInfo info_;
     glm::dvec3 origin_;
-    glm::dvec2 low_, high_;  ///< the extent
-    double reach_;           ///< largest coordinate of the extent
-    TriangleTree surface_;   ///< with thickness
+    glm::dvec2 low_, high_;            ///< the extent
+    double lowest_ = std::numeric_limits<double>::infinity();  ///< z of a corner of l_f
+    double highest_ = -std::numeric_limits<double>::infinity();
+    double reach_;                     ///< largest coordinate of the extent
+    TriangleTree surface_;             ///< with thickness
     TriangleTree slivers_;
     TriangleTree skirts_;
     glm::dvec2 skirts_low_{0.0}, skirts_high_{0.0};  ///< box of the skirts and the eye, in plan

@@ -377,6 +377,7 @@ PixelErrors measure_pixels(const ReferenceTerrain& terrain, const DrawnSurface& 
     const PixelMeter meter(terrain, surface, camera, hits, depth);
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         meter.measure_row(y, bound, pool, errors, shows, rows[y]);
+        terrain.forget();
     });
     for (PixelMeter::Row& row : rows) {
         pool.add(row.errors);

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 namespace lodbench::measure {
@@ -38,6 +39,11 @@ public:
     TriangleTree(std::vector<glm::vec3>&& vertices, const glm::dvec2& low, const glm::dvec2& high);
 
     [[nodiscard]] std::size_t triangle_count() const { return vertices_.size() / 3; }
+    /// Three a triangle.
+    [[nodiscard]] std::span<const glm::vec3> vertices() const { return vertices_; }
+    [[nodiscard]] std::size_t bytes() const {
+        return vertices_.size() * sizeof(glm::vec3) + nodes_.size() * sizeof(Node);
+    }
 
     /// Gives the triangles back and leaves an empty tree.
     [[nodiscard]] std::vector<glm::vec3> release();

@@ -55,8 +55,8 @@ void keep_worst(const WorstSample& candidate, int frame, double& px,
 }  // namespace
 
 TruthMeter::TruthMeter(std::span<const float> heights, const TerrainInfo& info,
-                       std::optional<double> claimed, Extent extent)
-    : terrain_(heights, info),
+                       std::optional<double> claimed, Extent extent, std::function<void()> forget)
+    : terrain_(heights, info, std::move(forget)),
       claimed_(claimed),
       extent_(extent),
       bound_(claimed.value_or(kInfinity)) {
@@ -70,16 +70,19 @@ void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface
     now_.camera = camera;
     now_.measured = false;
     now_.height_rmse.reset();
-    surface_.reset();  // the old one's memory first
-    surface_.emplace(std::move(surface), terrain_.info());
+    const bool pops = before_.measured && before_.frame + 1 == frame;
+    // The old ones' memory first.
+    now_.drawn.reset();
+    if (!pops) before_.drawn.reset();
+    surface_.reset();
+    surface_ = std::make_shared<const DrawnSurface>(std::move(surface), terrain_.info());
     if (extent_ == Extent::pixels) return;
-    now_.displacements.resize(terrain_.heights().size());
-    surface_->displacements(terrain_.heights(), now_.displacements);
-    if (!before_.measured || before_.frame + 1 != frame) return;
+    now_.drawn.emplace(surface_, terrain_);
+    if (!pops) return;
 
     frame_popping_.clear();
-    const Popping popping = measure_popping(terrain_, {before_.camera, before_.displacements},
-                                            {now_.camera, now_.displacements}, frame_popping_);
+    const Popping popping = measure_popping(terrain_, {before_.camera, *before_.drawn},
+                                            {now_.camera, *now_.drawn}, frame_popping_);
     const ErrorSummary summary = frame_popping_.summary(false);
     popping_.add(frame_popping_);
     ++popping_frames_;
@@ -140,7 +143,7 @@ void TruthMeter::measure_samples_into(FrameTruth& truth, const ReferenceView& vi
     frame_screen_.clear();
     frame_visible_.clear();
     const SampleErrors samples =
-        measure_samples(terrain_, now_.camera, now_.displacements, bound_, frame_screen_,
+        measure_samples(terrain_, now_.camera, *now_.drawn, bound_, frame_screen_,
                         VisibleErrors{view, frame_visible_});
     const ErrorSummary screen = frame_screen_.summary(false);
     const ErrorSummary visible = frame_visible_.summary(false);
@@ -195,18 +198,18 @@ void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixe
                               std::numeric_limits<float>::quiet_NaN());
         return;
     }
-    worst_->map_px = map_of_errors(terrain_, now_.camera, now_.displacements, worst_->map_rows,
-                                   worst_->map_columns);
+    worst_->map_px =
+        map_of_errors(terrain_, now_.camera, *now_.drawn, worst_->map_rows, worst_->map_columns);
 }
 
 Fewest TruthMeter::find_fewest(double target_px, ErrorBound bound) const {
     const GreedyTriangulation greedy =
         greedy_triangulation(terrain_, now_.camera, target_px, bound);
-    std::vector<float> displacements(terrain_.heights().size());
-    DrawnSurface(surface_of(greedy, terrain_, now_.camera), terrain_.info())
-        .displacements(terrain_.heights(), displacements);
+    const DrawnSamples drawn(std::make_shared<const DrawnSurface>(
+                                 surface_of(greedy, terrain_, now_.camera), terrain_.info()),
+                             terrain_);
     ErrorPool all;
-    (void)measure_samples(terrain_, now_.camera, displacements, kInfinity, all);
+    (void)measure_samples(terrain_, now_.camera, drawn, kInfinity, all);
     const ErrorSummary errors = all.summary(false);
     const auto measured = bound == ErrorBound::max ? errors.max : errors.p999;
     return {target_px, greedy.in_view, measured.value_or(0)};

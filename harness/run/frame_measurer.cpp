@@ -13,10 +13,12 @@
 namespace lodbench::run {
 
 FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed,
-                             std::shared_ptr<const terrain::HeightField> truth, ViewCache views,
+                             std::shared_ptr<const terrain::WholeTerrain> truth, ViewCache views,
                              measure::Extent extent)
     : stage_(&stage), truth_(std::move(truth)), views_(std::move(views)) {
-    if (truth_) meter_.emplace(truth_->samples(), truth_->info(), claimed, extent);
+    if (!truth_) return;
+    meter_.emplace(truth_->samples(), truth_->info(), claimed, extent,
+                   [whole = truth_.get()] { whole->forget(); });
 }
 
 measure::CapturedSurface FrameMeasurer::capture() {
@@ -136,6 +138,7 @@ void FrameMeasurer::write_picture(const std::filesystem::path& path,
                 float(terrain.height(middle(row, worst.map_rows, terrain.info().rows),
                                      middle(column, worst.map_columns, terrain.info().columns))));
         }
+        terrain.forget();
     }
     // A scale to P99.9, so that one pixel does not darken all others; uncovered places have a
     // colour of their own.

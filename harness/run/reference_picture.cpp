@@ -91,7 +91,7 @@ bool is_hidden(const measure::HiddenGround& hidden, const TerrainInfo& info, int
 }  // namespace
 
 ReferencePicture::ReferencePicture(gl::Device& device,
-                                   std::shared_ptr<const terrain::HeightField> terrain)
+                                   std::shared_ptr<const terrain::WholeTerrain> terrain)
     : device_(device),
       terrain_(std::move(terrain)),
       block_columns_((terrain_->info().columns - 2) / kBlockCells + 1),
@@ -132,6 +132,7 @@ void ReferencePicture::find_height_ranges() {
             }
             height_ranges_.push_back(range);
         }
+        terrain_->forget();
     }
 }
 
@@ -186,6 +187,7 @@ void ReferencePicture::draw(const Camera& camera, const measure::HiddenGround* h
         north_wests_.write(batch);
         device_.draw_elements(program_, vertices_, GL_TRIANGLES, kBlockIndices, GL_UNSIGNED_SHORT,
                               0, GLsizei(batch.size()));
+        terrain_->forget();
         after_batch();
     }
 }

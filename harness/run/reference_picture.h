@@ -12,7 +12,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "measure/hidden_ground.h"
-#include "terrain/height_field.h"
+#include "terrain/whole_terrain.h"
 
 namespace lodbench::run {
 
@@ -30,7 +30,7 @@ class ReferencePicture {
 public:
     /// Reads every sample once, for the blocks' height ranges. The device must outlive the object.
     /// Throws EnvironmentError when the driver has no memory.
-    ReferencePicture(gl::Device& device, std::shared_ptr<const terrain::HeightField> terrain);
+    ReferencePicture(gl::Device& device, std::shared_ptr<const terrain::WholeTerrain> terrain);
 
     /// Draws the blocks that `camera` may see into the framebuffer that is bound and cleared, in
     /// the state that Stage sets; `Frame` and `Frozen` must be filled for the camera. `after_batch`
@@ -54,7 +54,7 @@ private:
     void stage_heights(const glm::ivec2& north_west, float* heights) const;
 
     gl::Device& device_;
-    std::shared_ptr<const terrain::HeightField> terrain_;
+    std::shared_ptr<const terrain::WholeTerrain> terrain_;
     int block_columns_ = 0;
     int block_rows_ = 0;
     std::vector<HeightRange> height_ranges_;  ///< of the blocks, row by row from the north-west

@@ -420,11 +420,11 @@ void apply(const Overrides& overrides, Scenario& scenario) {
         require("--repeat", *overrides.repetitions, kMaxRepetitions);
         scenario.repetitions = *overrides.repetitions;
     }
-    if (scenario.terrain.out_of_core && scenario.measure.truth) {
+    if (scenario.terrain.out_of_core && scenario.measure.truth &&
+        !scenario.measure.economy.empty()) {
         throw InputError(fmt::format(
-            "{}: out_of_core is set, but measuring the truth needs the whole terrain in memory; "
-            "leave out_of_core out where it fits, or do not measure: truth = false under "
-            "[measure], or lodbench run --no-truth",
+            "{}: out_of_core is set, but economy triangulates the whole terrain in memory; leave "
+            "out_of_core out where it fits, or economy under [measure]",
             scenario.terrain.where));
     }
 }
