@@ -117,6 +117,9 @@ void measure_frames(const Options& options, const std::shared_ptr<const Terrain>
     stage.upload();
     const Camera first = grazing_camera(terrain->info(), 0);
     stage.resize(first.viewport);
+    // As the timing replay has drawn before anything is measured.
+    stage.select(first, {});
+    stage.draw_picture();
     // What lies in memory; of what is mapped as much as is resident counts, like all else.
     const bool in_memory = terrain == whole;
     const double field_bytes = in_memory ? double(whole->samples().size_bytes()) : 0;
@@ -157,7 +160,7 @@ void measure_ridged(const Options& options, int size) {
 }
 
 void measure_stored(const Options& options) {
-    const std::shared_ptr<const Terrain> store = terrain::open_terrain({.file = options.terrain});
+    const std::shared_ptr<const Terrain> store = terrain::open_terrain(options.source());
     const ViewFolder scratch;
     std::shared_ptr<const terrain::WholeTerrain> whole;
     const double copying = seconds_of(
