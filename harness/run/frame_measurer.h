@@ -52,6 +52,7 @@ private:
     std::shared_ptr<const terrain::WholeTerrain> truth_;  ///< outlives the stage
     std::optional<measure::TruthMeter> meter_;
     ViewCache views_;
+    measure::Extent extent_;
     int frame_ = 0;                    ///< that was taken last
     std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
 };

@@ -67,5 +67,31 @@ TEST(Views, kept_for_the_next_method_change_no_figure_and_are_gone_at_the_end) {
     }
 }
 
+// Each probe is a campaign of its own: the views must come from the search.
+TEST(Views, of_a_search_are_found_once_for_all_its_probes) {
+    const ScratchFolder folder;
+    const fs::path out = folder.path() / "out";
+    const pid_t child =
+        start_lodbench({"match", hills(folder.path()).string(), "--error", "4px", "--method",
+                        "template", "--probes", "3", "--out", out.string()},
+                       folder.path() / "log");
+    bool kept = false;
+    int of_a_probe = 0;
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        kept = kept ||
+               (fs::exists(out / "views" / "hills__4.view") && !fs::exists(out / "cells.jsonl"));
+        std::error_code ignored;
+        for (const auto& probe : fs::directory_iterator(out / "search", ignored)) {
+            of_a_probe += fs::exists(probe.path() / "views" / "hills__4.view", ignored) ? 1 : 0;
+        }
+        usleep(2000);
+    }
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(folder.path() / "log");
+    EXPECT_TRUE(kept) << "before the flight at the value that was found";
+    EXPECT_EQ(of_a_probe, 0);
+    EXPECT_FALSE(fs::exists(out / "views"));
+}
+
 }  // namespace
 }  // namespace lodbench::test
