@@ -68,8 +68,13 @@ public:
     struct Rounding {
         double plan = 0, height = 0;
     };
-    /// The greatest among the triangles of l_f at a world position; 0 where none covers it.
-    [[nodiscard]] Rounding rounding(const glm::dvec2& position) const;
+    /// `height`, and the greatest rounding among the triangles of l_f there; 0 where none covers
+    /// it.
+    struct Look {
+        std::optional<double> height;
+        Rounding rounding;
+    };
+    [[nodiscard]] Look look(const glm::dvec2& position) const;
 
     /// l_f - h in metres at every sample, row by row as `heights`: float32, so that its rounding is
     /// relative to the difference; NaN where no triangle covers the sample. Parallel; the same to
@@ -144,9 +149,10 @@ private:
 
     // The following are relative to origin_; "nothing" is minus infinity.
     [[nodiscard]] double relative_height(const glm::dvec2& point) const;
-    /// Whether the box of child i comes within its rounding of the rectangle.
-    [[nodiscard]] bool is_near(const TriangleTree::Node& node, std::size_t i, const glm::dvec2& low,
-                               const glm::dvec2& high) const;
+    /// A rectangle with the rounding of any triangle around it.
+    [[nodiscard]] PlanBox around(const glm::dvec2& low, const glm::dvec2& high) const;
+    /// `height` from what was found covering a point, or near it where nothing does.
+    [[nodiscard]] std::optional<double> world_height(double relative) const;
     /// Of the triangles within whose rounding a point lies.
     [[nodiscard]] double nearby_height(const glm::dvec2& point) const;
     /// Whether a triangle's box comes within its rounding of the rectangle: if not, nothing covers
@@ -171,11 +177,11 @@ private:
 
     TerrainInfo info_;
     glm::dvec3 origin_;
-    glm::dvec2 low_, high_;            ///< the extent
+    glm::dvec2 low_, high_;                                    ///< the extent
     double lowest_ = std::numeric_limits<double>::infinity();  ///< z of a corner of l_f
     double highest_ = -std::numeric_limits<double>::infinity();
-    double reach_;                     ///< largest coordinate of the extent
-    TriangleTree surface_;             ///< with thickness
+    double reach_;          ///< largest coordinate of the extent
+    TriangleTree surface_;  ///< with thickness
     TriangleTree slivers_;
     TriangleTree skirts_;
     glm::dvec2 skirts_low_{0.0}, skirts_high_{0.0};  ///< box of the skirts and the eye, in plan

@@ -150,12 +150,11 @@ void DrawnSurface::write_displacements(std::span<const float> heights, const Sam
 void DrawnSurface::draw_triangles(Tile& tile) const {
     const glm::dvec2 low = tile.low();
     const glm::dvec2 high = tile.high();
-    surface_.each(
-        [&](const TriangleTree::Node& node, std::size_t i) {
-            return node.min_x[i] <= high.x && node.max_x[i] >= low.x && node.min_y[i] <= high.y &&
-                   node.max_y[i] >= low.y;
-        },
-        [&](const glm::vec3* corners) { tile.draw(PlanTriangle(corners)); });
+    const PlanBox box(low, high);
+    surface_.each([&](const TriangleTree::Node& node) { return node.meets(box); },
+                  [&](const glm::vec3* corners) {
+                      if (box.meets(corners)) tile.draw(PlanTriangle(corners));
+                  });
 }
 
 void DrawnSurface::draw_neighbourhoods(Tile& tile) const {

@@ -80,11 +80,10 @@ void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface
     now_.drawn.emplace(surface_, terrain_);
     if (!pops) return;
 
-    frame_popping_.clear();
     const Popping popping = measure_popping(terrain_, {before_.camera, *before_.drawn},
-                                            {now_.camera, *now_.drawn}, frame_popping_);
-    const ErrorSummary summary = frame_popping_.summary(false);
-    popping_.add(frame_popping_);
+                                            {now_.camera, *now_.drawn}, frame_);
+    const ErrorSummary summary = frame_.summary(false);
+    popping_.take(frame_);
     ++popping_frames_;
     total_.popping_over_1px += popping.over_1px;
     total_.popping_covered_once += popping.covered_once;
@@ -102,10 +101,9 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
                                const ReferenceView& view) {
     if (!surface_) throw ContractError("TruthMeter::measure: no frame was taken");
     FrameTruth truth;
-    frame_pixel_.clear();
     PixelErrors pixels =
-        measure_pixels(terrain_, *surface_, now_.camera, view.hits, depth, bound_, frame_pixel_);
-    const ErrorSummary pixel = frame_pixel_.summary(false);
+        measure_pixels(terrain_, *surface_, now_.camera, view.hits, depth, bound_, frame_);
+    const ErrorSummary pixel = frame_.summary(false);
     truth.pixel_max_px = pixel.max;
     truth.pixel_p999_px = pixel.p999;
     truth.pixel_rms_px = pixel.rms;
@@ -113,7 +111,7 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
     truth.skirt_pixels = pixels.skirt_pixels;
     truth.silhouette_pixels = pixels.silhouette_pixels;
     truth.silhouette_max_px = pixels.silhouette_max;
-    pixel_.add(frame_pixel_);
+    pixel_.take(frame_);
     keep_worst(worst_pixel(pixels, now_.camera.viewport.width), now_.frame, pixel_worst_px_,
                total_.pixel_worst);
     ++total_.frames;
@@ -140,12 +138,10 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
 }
 
 void TruthMeter::measure_samples_into(FrameTruth& truth, const ReferenceView& view) {
-    frame_screen_.clear();
-    frame_visible_.clear();
-    const SampleErrors samples =
-        measure_samples(terrain_, now_.camera, *now_.drawn, bound_, frame_screen_,
-                        VisibleErrors{view, frame_visible_});
-    const ErrorSummary screen = frame_screen_.summary(false);
+    const SampleErrors samples = measure_samples(terrain_, now_.camera, *now_.drawn, bound_, frame_,
+                                                 VisibleErrors{view, frame_visible_});
+    const ErrorSummary screen = frame_.summary(false);
+    now_.screen = screen;
     const ErrorSummary visible = frame_visible_.summary(false);
     truth.screen_max_px = screen.max;
     truth.screen_p999_px = screen.p999;
@@ -154,8 +150,8 @@ void TruthMeter::measure_samples_into(FrameTruth& truth, const ReferenceView& vi
     truth.visible_p999_px = visible.p999;
     truth.uncovered_samples = screen.uncovered;
     truth.height_rmse_m = rmse(samples.heights);
-    screen_.add(frame_screen_);
-    visible_.add(frame_visible_);
+    screen_.take(frame_);
+    visible_.take(frame_visible_);
     keep_worst(samples.worst, now_.frame, screen_worst_px_, total_.screen_worst);
     keep_worst(samples.worst_visible, now_.frame, visible_worst_px_, total_.visible_worst);
     total_.clipped += samples.clipped;
@@ -219,7 +215,7 @@ void TruthMeter::find_economy(std::uint64_t triangles) {
     if (!now_.measured || extent_ != Extent::all) {
         throw ContractError("TruthMeter::find_economy: no frame's samples were measured");
     }
-    const ErrorSummary errors = frame_screen_.summary(false);
+    const ErrorSummary& errors = now_.screen;
     if (!errors.max_covered) return;
     Economy& economy = total_.economy.emplace_back();
     economy.frame = now_.frame;

@@ -146,6 +146,7 @@ private:
         Camera camera;
         std::optional<DrawnSamples> drawn;  ///< nothing where only pixels are measured
         bool measured = false;
+        ErrorSummary screen;  ///< where samples were measured
         std::optional<double> height_rmse;
     };
     void measure_samples_into(FrameTruth& truth, const ReferenceView& view);
@@ -162,7 +163,7 @@ private:
     Taken now_, before_;
     std::shared_ptr<const DrawnSurface> surface_;  ///< of now_
     ErrorPool screen_, visible_, pixel_, popping_, realtime_;
-    ErrorPool frame_screen_, frame_visible_, frame_pixel_, frame_popping_;  ///< of one frame
+    ErrorPool frame_, frame_visible_;  ///< of one frame; empty in between
     TruthSummary total_;
     double screen_worst_px_ = -1, visible_worst_px_ = -1, pixel_worst_px_ = -1,
            realtime_worst_px_ = -1;

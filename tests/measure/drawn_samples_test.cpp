@@ -19,12 +19,12 @@ constexpr int kSide = 150;  // three blocks a side, the last a part of one
 
 /// Hills, and a surface through every eighth sample with a hole in it; seen from `eye`.
 struct Frame {
-    explicit Frame(const glm::dvec3& eye, float raised = 0) {
+    explicit Frame(const glm::dvec3& eye, float raised = 0, double rise = -0.3) {
         ground = make_ground(kSide, kSide, [](int row, int column) {
             return float(9 * std::sin(row * 0.21) * std::cos(column * 0.17));
         });
         camera.position = eye;
-        camera.orientation = Camera::look({1, 0.4, -0.3});
+        camera.orientation = Camera::look({1, 0.4, rise});
         camera.near_plane = 0.5;
         camera.viewport = {160, 120};
         CapturedSurface captured;
@@ -101,6 +101,17 @@ TEST(DrawnSamples, a_coarse_surface_is_kept_and_measures_as_its_displacements_do
             return a == b || (std::isnan(a) && std::isnan(b));
         }));
     }
+}
+
+TEST(DrawnSamples, what_is_drawn_high_above_the_truth_is_in_view_though_the_truth_is_not) {
+    const Frame frame({3, 20, 25}, 60, 0.9);
+    const ReferenceTerrain terrain = frame.ground.terrain();
+    ErrorPool of_surface, of_array;
+    (void)measure_samples(terrain, frame.camera, DrawnSamples(frame.surface, terrain), 1,
+                          of_surface);
+    (void)measure_samples(terrain, frame.camera, frame.displacements(), 1, of_array);
+    ASSERT_GT(of_array.sums().count, 0U);
+    expect_equal(of_surface, of_array);
 }
 
 TEST(DrawnSamples, a_surface_larger_than_its_displacements_is_not_kept) {
