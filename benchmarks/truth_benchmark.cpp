@@ -1,6 +1,6 @@
 // What one measured frame costs: capture, drawn surface, all metrics, both pictures; for the first
 // method of a run, for those that find its views of the terrain kept, and where the pixels alone
-// are measured.
+// are measured. Of a ridged terrain in memory, or of a tiled store (--terrain) that stays on disk.
 
 #include <fmt/format.h>
 
@@ -18,6 +18,8 @@
 #include "run/locations.h"
 #include "run/stage.h"
 #include "terrain/height_field.h"
+#include "terrain/mapped_terrain.h"
+#include "terrain/open_terrain.h"
 
 namespace lodbench::benchmarks {
 
@@ -74,7 +76,7 @@ struct Measured {
 };
 
 Measured measure(run::Stage& stage, const Options& options,
-                 const std::shared_ptr<const terrain::HeightField>& terrain,
+                 const std::shared_ptr<const terrain::WholeTerrain>& terrain,
                  const run::ViewCache& cache, measure::Extent extent) {
     run::FrameMeasurer measurer(stage, 1.0, terrain, cache, extent);
     std::vector<double> walls, cpus;
@@ -105,11 +107,9 @@ Measured measure(run::Stage& stage, const Options& options,
             all ? per_frame(cell.visible_error_px) : 0};
 }
 
-void measure_frames(const Options& options, int size) {
-    terrain::TerrainSource source;
-    source.synthetic = "ridged";
-    source.rows = source.columns = size;
-    const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(source);
+/// `terrain`: what the method flies; `whole`: what it is measured against.
+void measure_frames(const Options& options, const std::shared_ptr<const Terrain>& terrain,
+                    const std::shared_ptr<const terrain::WholeTerrain>& whole) {
     const run::MethodInfo method = flown_method(options);
     run::VitalSigns signs;
     run::Stage stage({terrain, method.plugin, method.id, options.settings, ""}, signs);
@@ -117,18 +117,25 @@ void measure_frames(const Options& options, int size) {
     stage.upload();
     const Camera first = grazing_camera(terrain->info(), 0);
     stage.resize(first.viewport);
-    const double field_bytes = double(terrain->samples().size_bytes());
+    // As the timing replay has drawn before anything is measured.
+    stage.select(first, {});
+    stage.draw_picture();
+    // What lies in memory; of what is mapped as much as is resident counts, like all else.
+    const bool in_memory = terrain == whole;
+    const double field_bytes = in_memory ? double(whole->samples().size_bytes()) : 0;
     const double before = memory_bytes("VmRSS");
     forget_peak();
 
     const ViewFolder views;
     const run::ViewCache cache(views.path, "benchmark", terrain->info().checksum, "");
-    const Measured alone = measure(stage, options, terrain, cache, measure::Extent::all);
+    const Measured alone = measure(stage, options, whole, cache, measure::Extent::all);
     const double own = memory_bytes("VmHWM") - before + field_bytes;
-    const Measured further = measure(stage, options, terrain, cache, measure::Extent::all);
-    const Measured pixels = measure(stage, options, terrain, cache, measure::Extent::pixels);
-    fmt::print("truth of a frame of {3}, ridged {0} x {0}, {1} x {2} pixels, wall (CPU) seconds:\n",
-               size, first.viewport.width, first.viewport.height, method.id);
+    const Measured further = measure(stage, options, whole, cache, measure::Extent::all);
+    const Measured pixels = measure(stage, options, whole, cache, measure::Extent::pixels);
+    const TerrainInfo& info = terrain->info();
+    fmt::print("truth of a frame of {}, {} {} x {}, {} x {} pixels, wall (CPU) seconds:\n",
+               method.id, info.name, info.rows, info.columns, first.viewport.width,
+               first.viewport.height);
     for (const auto& [words, cost] : {std::pair{"the first method of a run", alone},
                                       {"each other one", further},
                                       {"a probe of match", pixels}}) {
@@ -136,15 +143,41 @@ void measure_frames(const Options& options, int size) {
     }
     fmt::print("  {:.0f} triangles, {} samples in view, {} seen\n", alone.triangles,
                alone.samples_in_view, alone.samples_seen);
-    fmt::print("  memory {:.2f} x the height field, it included\n", own / field_bytes);
+    if (in_memory) {
+        fmt::print("  memory {:.2f} x the height field, it included\n", own / field_bytes);
+    } else {
+        fmt::print("  memory {:.0f} MB, {:.0f} MB in all\n", own * 1e-6, (own + before) * 1e-6);
+    }
     stage.release();
+}
+
+void measure_ridged(const Options& options, int size) {
+    terrain::TerrainSource source;
+    source.synthetic = "ridged";
+    source.rows = source.columns = size;
+    const std::shared_ptr<const terrain::HeightField> terrain = terrain::load_terrain(source);
+    measure_frames(options, terrain, terrain);
+}
+
+void measure_stored(const Options& options) {
+    const std::shared_ptr<const Terrain> store = terrain::open_terrain(options.source());
+    const ViewFolder scratch;
+    std::shared_ptr<const terrain::WholeTerrain> whole;
+    const double copying = seconds_of(
+        [&] { whole = std::make_shared<const terrain::MappedTerrain>(store, scratch.path); });
+    fmt::print("{} into a scratch file: {:.3f} s\n", options.terrain.string(), copying);
+    measure_frames(options, store, whole);
 }
 
 }  // namespace
 
 void truth_benchmark(const Options& options) {
-    measure_frames(options, 1025);
-    if (options.size != 1025) measure_frames(options, options.size);
+    if (!options.terrain.empty()) {
+        measure_stored(options);
+        return;
+    }
+    measure_ridged(options, 1025);
+    if (options.size != 1025) measure_ridged(options, options.size);
 }
 
 }  // namespace lodbench::benchmarks

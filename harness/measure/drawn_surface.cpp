@@ -17,17 +17,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = DrawnSurface::kRoundingUnits / 16777216;  // 2^-24
 
-/// The least float that is not below, the greatest that is not above a point.
-struct FloatBracket {
-    glm::vec2 low, high;
-    explicit FloatBracket(const glm::dvec2& point) : low(point), high(point) {
-        for (int axis = 0; axis < 2; ++axis) {
-            if (double(low[axis]) > point[axis]) low[axis] = std::nextafter(low[axis], -INFINITY);
-            if (double(high[axis]) < point[axis]) high[axis] = std::nextafter(high[axis], INFINITY);
-        }
-    }
-};
-
 bool finite(const Corners& corners) {
     return std::ranges::all_of(corners, [](const glm::vec3& corner) {
         return std::isfinite(corner.x) && std::isfinite(corner.y) && std::isfinite(corner.z);
@@ -132,6 +121,20 @@ DrawnSurface::DrawnSurface(CapturedSurface&& surface, const TerrainInfo& info)
         skirts_high_ = glm::max(skirts_high_, glm::dvec2(vertex));
     }
     skirts_ = TriangleTree(std::move(skirts), low_, high_);
+    for (const TriangleTree* tree : {&surface_, &slivers_}) {
+        for (const glm::vec3& vertex : tree->vertices()) {
+            lowest_ = std::min(lowest_, double(vertex.z));
+            highest_ = std::max(highest_, double(vertex.z));
+        }
+    }
+}
+
+HeightInterval DrawnSurface::bounds() const {
+    if (lowest_ > highest_) return {kInfinity, -kInfinity};
+    // Displacements are rounded to float.
+    const double rounding =
+        0x1p-20 * (std::abs(origin_.z) + std::max(std::abs(lowest_), std::abs(highest_)));
+    return {origin_.z + lowest_ - rounding, origin_.z + highest_ + rounding};
 }
 
 DrawnSurface::Sorted DrawnSurface::sort_by_kind(std::vector<glm::vec3>&& vertices) const {
@@ -200,55 +203,70 @@ bool DrawnSurface::touches_extent(const glm::vec3* corners) const {
 }
 
 std::optional<double> DrawnSurface::height(const glm::dvec2& position) const {
-    const double relative = relative_height(position - glm::dvec2(origin_));
+    return world_height(relative_height(position - glm::dvec2(origin_)));
+}
+
+std::optional<double> DrawnSurface::world_height(double relative) const {
     if (relative == -kInfinity) return std::nullopt;
     return origin_.z + relative;
 }
 
-DrawnSurface::Rounding DrawnSurface::rounding(const glm::dvec2& position) const {
+DrawnSurface::Look DrawnSurface::look(const glm::dvec2& position) const {
     const glm::dvec2 point = position - glm::dvec2(origin_);
+    const PlanBox box = around(point, point);
+    double covering = -kInfinity;
+    double nearby = -kInfinity;
     Rounding greatest;
-    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
-        return is_near(node, i, point, point);
-    };
-    const auto visit = [&](const glm::vec3* corners) {
-        const double plan = plan_rounding(corners);
-        if (!PlanTriangle(corners).covers(point) &&
-            nearest_on_outline(corners, point).distance > plan) {
-            return;
-        }
+    const auto keep_rounding = [&](const glm::vec3* corners, double plan) {
         const float highest =
             std::max({std::abs(corners[0].z), std::abs(corners[1].z), std::abs(corners[2].z)});
         greatest = {std::max(greatest.plan, plan),
                     std::max(greatest.height, kRounding * double(highest))};
     };
-    surface_.each(enters, visit);
-    slivers_.each(enters, visit);
-    return greatest;
+    const auto enters = [&](const TriangleTree::Node& node) { return node.meets(box); };
+    const auto visit = [&](const glm::vec3* corners, bool has_inside) {
+        if (!box.meets(corners)) return;
+        const double plan = plan_rounding(corners);
+        const PlanTriangle triangle(corners);
+        const bool covers = triangle.covers(point);
+        if (covers && has_inside) {
+            covering = std::max(covering, triangle.height(point));
+        } else {
+            const OutlinePoint nearest = nearest_on_outline(corners, point);
+            if (nearest.distance <= plan) {
+                nearby = std::max(nearby, nearest.z);
+            } else if (!covers) {
+                return;
+            }
+        }
+        keep_rounding(corners, plan);
+    };
+    surface_.each(enters, [&](const glm::vec3* corners) { visit(corners, true); });
+    slivers_.each(enters, [&](const glm::vec3* corners) { visit(corners, false); });
+    return {world_height(covering != -kInfinity ? covering : nearby), greatest};
 }
 
 double DrawnSurface::relative_height(const glm::dvec2& point) const {
     double highest = -kInfinity;
-    const FloatBracket bracket(point);
-    surface_.each(
-        [&bracket](const TriangleTree::Node& node, std::size_t i) {
-            return (node.min_x[i] <= bracket.high.x) & (node.max_x[i] >= bracket.low.x) &
-                   (node.min_y[i] <= bracket.high.y) & (node.max_y[i] >= bracket.low.y);
-        },
-        [&](const glm::vec3* corners) {
-            const PlanTriangle triangle(corners);
-            if (triangle.covers(point)) highest = std::max(highest, triangle.height(point));
-        });
+    const PlanBox box(point);
+    surface_.each([&box](const TriangleTree::Node& node) { return node.meets(box); },
+                  [&](const glm::vec3* corners) {
+                      if (!box.meets(corners)) return;
+                      const PlanTriangle triangle(corners);
+                      if (triangle.covers(point)) {
+                          highest = std::max(highest, triangle.height(point));
+                      }
+                  });
     if (highest != -kInfinity) return highest;
     return nearby_height(point);
 }
 
 double DrawnSurface::nearby_height(const glm::dvec2& point) const {
     double highest = -kInfinity;
-    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
-        return is_near(node, i, point, point);
-    };
+    const PlanBox box = around(point, point);
+    const auto enters = [&](const TriangleTree::Node& node) { return node.meets(box); };
     const auto visit = [&](const glm::vec3* corners) {
+        if (!box.meets(corners)) return;
         const OutlinePoint nearest = nearest_on_outline(corners, point);
         if (nearest.distance <= plan_rounding(corners)) highest = std::max(highest, nearest.z);
     };
@@ -258,21 +276,15 @@ double DrawnSurface::nearby_height(const glm::dvec2& point) const {
 }
 
 bool DrawnSurface::anything_near(const glm::dvec2& low, const glm::dvec2& high) const {
-    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
-        return is_near(node, i, low, high);
-    };
+    const PlanBox box = around(low, high);
+    const auto enters = [&](const TriangleTree::Node& node) { return node.meets(box); };
     const auto found = [](const glm::vec3* /*corners*/) { return true; };
     return surface_.any(enters, found) || slivers_.any(enters, found);
 }
 
-bool DrawnSurface::is_near(const TriangleTree::Node& node, std::size_t i, const glm::dvec2& low,
-                           const glm::dvec2& high) const {
-    const float largest = std::max({std::abs(node.min_x[i]), std::abs(node.max_x[i]),
-                                    std::abs(node.min_y[i]), std::abs(node.max_y[i])});
-    // That of any triangle within, and a little for the rounding of the distance itself.
-    const double rounding = plan_rounding(largest) * (1 + 0x1p-40);
-    return node.min_x[i] - rounding <= high.x && node.max_x[i] + rounding >= low.x &&
-           node.min_y[i] - rounding <= high.y && node.max_y[i] + rounding >= low.y;
+PlanBox DrawnSurface::around(const glm::dvec2& low, const glm::dvec2& high) const {
+    // Of no triangle more, and a little for the rounding of the distance itself.
+    return {low, high, plan_rounding(kInfinity) * (1 + 0x1p-40)};
 }
 
 bool DrawnSurface::passes_below(const glm::dvec3& origin, const glm::dvec3& direction, double from,
@@ -281,7 +293,7 @@ bool DrawnSurface::passes_below(const glm::dvec3& origin, const glm::dvec3& dire
         PlanRay::over(low_, high_, origin - origin_, direction, from, to);
     if (!ray) return false;
     return surface_.any(
-        [&ray](const TriangleTree::Node& node, std::size_t i) { return ray->reaches(node, i); },
+        [&ray](const TriangleTree::Node& node) { return ray->reaches(node); },
         [&ray](const glm::vec3* corners) { return ray->is_below(PlanTriangle(corners)); });
 }
 
@@ -305,7 +317,7 @@ bool DrawnSurface::any_beside(const glm::dvec3& start, const glm::dvec3& directi
     const glm::dvec2 a = glm::dvec2(start + from * direction);
     const glm::dvec2 b = glm::dvec2(start + to * direction);
     const double margin = radius * to * glm::length(direction);
-    const auto enters = [&](const TriangleTree::Node& node, std::size_t i) {
+    const auto comes_by = [&](const TriangleTree::Node& node, std::size_t i) {
         if (node.min_x[i] > node.max_x[i]) return false;  // no child
         double enter = 0;
         double leave = 1;
@@ -323,6 +335,13 @@ bool DrawnSurface::any_beside(const glm::dvec3& start, const glm::dvec3& directi
             leave = std::min(leave, std::max(one, other));
         }
         return enter <= leave;
+    };
+    const auto enters = [&](const TriangleTree::Node& node) {
+        unsigned mask = 0;
+        for (std::size_t i = 0; i < TriangleTree::Node::kWidth; ++i) {
+            mask |= unsigned(comes_by(node, i)) << i;
+        }
+        return mask;
     };
     return surface_.any(enters, visit);
 }
@@ -377,12 +396,11 @@ std::optional<double> DrawnSurface::least_meeting(const TriangleTree& tree, cons
     const std::optional<PlanRay> ray = PlanRay::over(low, high, start, direction, from, to);
     if (!ray) return std::nullopt;
     double least = kInfinity;
-    tree.each(
-        [&ray](const TriangleTree::Node& node, std::size_t i) { return ray->reaches(node, i); },
-        [&](const glm::vec3* corners) {
-            const double t = meeting(corners, start, direction);
-            if (t >= from && t <= to) least = std::min(least, t);
-        });
+    tree.each([&ray](const TriangleTree::Node& node) { return ray->reaches(node); },
+              [&](const glm::vec3* corners) {
+                  const double t = meeting(corners, start, direction);
+                  if (t >= from && t <= to) least = std::min(least, t);
+              });
     if (least == kInfinity) return std::nullopt;
     return least;
 }

@@ -23,6 +23,7 @@
 
 #include "api/terrain.h"
 #include "measure/capture.h"
+#include "measure/reference_terrain.h"
 #include "measure/triangle_tree.h"
 
 namespace lodbench::measure {
@@ -67,14 +68,30 @@ public:
     struct Rounding {
         double plan = 0, height = 0;
     };
-    /// The greatest among the triangles of l_f at a world position; 0 where none covers it.
-    [[nodiscard]] Rounding rounding(const glm::dvec2& position) const;
+    /// `height`, and the greatest rounding among the triangles of l_f there; 0 where none covers
+    /// it.
+    struct Look {
+        std::optional<double> height;
+        Rounding rounding;
+    };
+    [[nodiscard]] Look look(const glm::dvec2& position) const;
 
     /// l_f - h in metres at every sample, row by row as `heights`: float32, so that its rounding is
     /// relative to the difference; NaN where no triangle covers the sample. Parallel; the same to
     /// the bit each time, and `height` minus h to the bit. Throws ContractError when a span's size
     /// is not rows * columns.
     void displacements(std::span<const float> heights, std::span<float> result) const;
+    /// The same at the samples of a rectangle alone, not parallel. `heights`: of all samples.
+    void displacements(std::span<const float> heights, const SampleRect& rect,
+                       std::span<float> result) const;
+
+    /// An interval that holds l_f wherever it is, metres: conservative. Low is above high where no
+    /// triangle is.
+    [[nodiscard]] HeightInterval bounds() const;
+    /// What it takes, about.
+    [[nodiscard]] std::size_t bytes() const {
+        return surface_.bytes() + slivers_.bytes() + skirts_.bytes();
+    }
 
     /// Whether the ray origin + t * direction is below l_f, strictly, for some t in [from, to];
     /// `from` is finite, `to` may be infinite. Exact, up to the rounding of double, against every
@@ -132,9 +149,10 @@ private:
 
     // The following are relative to origin_; "nothing" is minus infinity.
     [[nodiscard]] double relative_height(const glm::dvec2& point) const;
-    /// Whether the box of child i comes within its rounding of the rectangle.
-    [[nodiscard]] bool is_near(const TriangleTree::Node& node, std::size_t i, const glm::dvec2& low,
-                               const glm::dvec2& high) const;
+    /// A rectangle with the rounding of any triangle around it.
+    [[nodiscard]] PlanBox around(const glm::dvec2& low, const glm::dvec2& high) const;
+    /// `height` from what was found covering a point, or near it where nothing does.
+    [[nodiscard]] std::optional<double> world_height(double relative) const;
     /// Of the triangles within whose rounding a point lies.
     [[nodiscard]] double nearby_height(const glm::dvec2& point) const;
     /// Whether a triangle's box comes within its rounding of the rectangle: if not, nothing covers
@@ -150,14 +168,20 @@ private:
                                                       const glm::dvec3& origin,
                                                       const glm::dvec3& direction, double from,
                                                       double to) const;
+    [[nodiscard]] std::size_t sample_index(int row, int column) const;
+    /// Of a rectangle's samples, rows `stride` apart.
+    void write_displacements(std::span<const float> heights, const SampleRect& rect, float* result,
+                             std::size_t stride) const;
     void draw_triangles(Tile& tile) const;
     void draw_neighbourhoods(Tile& tile) const;  ///< where no triangle was drawn
 
     TerrainInfo info_;
     glm::dvec3 origin_;
-    glm::dvec2 low_, high_;  ///< the extent
-    double reach_;           ///< largest coordinate of the extent
-    TriangleTree surface_;   ///< with thickness
+    glm::dvec2 low_, high_;                                    ///< the extent
+    double lowest_ = std::numeric_limits<double>::infinity();  ///< z of a corner of l_f
+    double highest_ = -std::numeric_limits<double>::infinity();
+    double reach_;          ///< largest coordinate of the extent
+    TriangleTree surface_;  ///< with thickness
     TriangleTree slivers_;
     TriangleTree skirts_;
     glm::dvec2 skirts_low_{0.0}, skirts_high_{0.0};  ///< box of the skirts and the eye, in plan

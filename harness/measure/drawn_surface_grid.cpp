@@ -116,33 +116,45 @@ void DrawnSurface::displacements(std::span<const float> heights, std::span<float
         rect.column = index % tile_columns * kTileSide;
         rect.rows = std::min(kTileSide, info_.rows - rect.row);
         rect.columns = std::min(kTileSide, info_.columns - rect.column);
-        Tile tile(info_, glm::dvec2(origin_), rect);
-        draw_triangles(tile);
-        draw_neighbourhoods(tile);
-        for (int row = 0; row < rect.rows; ++row) {
-            const std::size_t begin =
-                std::size_t(rect.row + row) * std::size_t(info_.columns) + std::size_t(rect.column);
-            const std::size_t tile_begin = std::size_t(row) * std::size_t(rect.columns);
-            for (std::size_t column = 0; column < std::size_t(rect.columns); ++column) {
-                const double highest = tile.highest[tile_begin + column];
-                result[begin + column] =
-                    highest == -kInfinity
-                        ? std::numeric_limits<float>::quiet_NaN()
-                        : float(origin_.z + highest - double(heights[begin + column]));
-            }
-        }
+        write_displacements(heights, rect, &result[sample_index(rect.row, rect.column)],
+                            std::size_t(info_.columns));
     });
+}
+
+void DrawnSurface::displacements(std::span<const float> heights, const SampleRect& rect,
+                                 std::span<float> result) const {
+    write_displacements(heights, rect, result.data(), std::size_t(rect.columns));
+}
+
+std::size_t DrawnSurface::sample_index(int row, int column) const {
+    return std::size_t(row) * std::size_t(info_.columns) + std::size_t(column);
+}
+
+void DrawnSurface::write_displacements(std::span<const float> heights, const SampleRect& rect,
+                                       float* result, std::size_t stride) const {
+    Tile tile(info_, glm::dvec2(origin_), rect);
+    draw_triangles(tile);
+    draw_neighbourhoods(tile);
+    for (int row = 0; row < rect.rows; ++row) {
+        const float* const truth = &heights[sample_index(rect.row + row, rect.column)];
+        const double* const drawn = &tile.highest[std::size_t(row) * std::size_t(rect.columns)];
+        float* const out = result + std::size_t(row) * stride;
+        for (int column = 0; column < rect.columns; ++column) {
+            out[column] = drawn[column] == -kInfinity
+                              ? std::numeric_limits<float>::quiet_NaN()
+                              : float(origin_.z + drawn[column] - double(truth[column]));
+        }
+    }
 }
 
 void DrawnSurface::draw_triangles(Tile& tile) const {
     const glm::dvec2 low = tile.low();
     const glm::dvec2 high = tile.high();
-    surface_.each(
-        [&](const TriangleTree::Node& node, std::size_t i) {
-            return node.min_x[i] <= high.x && node.max_x[i] >= low.x && node.min_y[i] <= high.y &&
-                   node.max_y[i] >= low.y;
-        },
-        [&](const glm::vec3* corners) { tile.draw(PlanTriangle(corners)); });
+    const PlanBox box(low, high);
+    surface_.each([&](const TriangleTree::Node& node) { return node.meets(box); },
+                  [&](const glm::vec3* corners) {
+                      if (box.meets(corners)) tile.draw(PlanTriangle(corners));
+                  });
 }
 
 void DrawnSurface::draw_neighbourhoods(Tile& tile) const {

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "api/error.h"
 
@@ -32,16 +33,6 @@ double ErrorPool::value_of(std::size_t bucket) {
     // The middle of the bucket.
     return std::bit_cast<double>((bits << unsigned(52 - kBucketBits)) |
                                  (std::uint64_t{1} << unsigned(51 - kBucketBits)));
-}
-
-template <typename Visit>
-void ErrorPool::visit_buckets(const Visit& visit) const {
-    for (std::size_t page = 0; page < kPages; ++page) {
-        if (!touched_[page]) continue;
-        for (std::size_t i = page * kPageSize; i < (page + 1) * kPageSize; ++i) {
-            if (buckets_[i] != 0 && visit(i, buckets_[i])) return;
-        }
-    }
 }
 
 void ErrorPool::tally(ErrorBatch& batch, double error, double bound) {
@@ -79,24 +70,17 @@ void ErrorPool::add(ErrorBatch& batch) {
     sums_.add(batch.sums);
 }
 
-void ErrorPool::add(const ErrorPool& other) {
-    other.visit_buckets([&](std::size_t bucket, std::uint64_t count) {
-        buckets_[bucket] += count;
-        touched_[bucket / kPageSize] = true;
-        return false;
-    });
-    zeros_ += other.zeros_;
-    sums_.add(other.sums_);
-}
-
-void ErrorPool::clear() {
-    visit_buckets([this](std::size_t bucket, std::uint64_t /*count*/) {
-        buckets_[bucket] = 0;
-        return false;
-    });
-    touched_.fill(false);
-    zeros_ = 0;
-    sums_ = {};
+void ErrorPool::take(ErrorPool& other) {
+    for (std::size_t page = 0; page < kPages; ++page) {
+        if (!other.touched_[page]) continue;
+        touched_[page] = true;
+        for (std::size_t i = page * kPageSize; i < (page + 1) * kPageSize; ++i) {
+            buckets_[i] += std::exchange(other.buckets_[i], 0);
+        }
+    }
+    other.touched_.fill(false);
+    zeros_ += std::exchange(other.zeros_, 0);
+    sums_.add(std::exchange(other.sums_, {}));
 }
 
 std::optional<double> ErrorPool::percentile(double p) const {
@@ -108,20 +92,22 @@ std::optional<double> ErrorPool::percentile(double p) const {
     const double product = p * double(sums_.count);
     const auto rank = std::uint64_t(
         std::max(1.0, std::ceil(product * (1 - 4 * std::numeric_limits<double>::epsilon()))));
-    std::uint64_t seen = zeros_;
-    if (seen >= rank) return 0.0;
-    double value = std::numeric_limits<double>::infinity();
-    visit_buckets([&](std::size_t bucket, std::uint64_t count) {
-        seen += count;
-        if (seen < rank) return false;
-        // A bucket's middle may lie above the greatest error in it.
-        value = std::min(value_of(bucket), sums_.greatest);
-        return true;
-    });
-    if (seen < rank && seen + sums_.infinite < sums_.count) {
+    // From the greatest down: the percentiles that are asked for are near.
+    const std::uint64_t above_rank = sums_.count - rank;
+    std::uint64_t seen = sums_.infinite;
+    if (seen > above_rank) return std::numeric_limits<double>::infinity();
+    for (std::size_t page = kPages; page-- > 0;) {
+        if (!touched_[page]) continue;
+        for (std::size_t i = (page + 1) * kPageSize; i-- > page * kPageSize;) {
+            seen += buckets_[i];
+            // A bucket's middle may lie above the greatest error in it.
+            if (seen > above_rank) return std::min(value_of(i), sums_.greatest);
+        }
+    }
+    if (seen + zeros_ <= above_rank) {
         throw ContractError("ErrorPool: fewer errors were tallied than summed");
     }
-    return value;
+    return 0.0;
 }
 
 ErrorSummary ErrorPool::summary(bool bounded) const {

@@ -71,8 +71,8 @@ public:
     void tally(ErrorBatch& batch, double error, double bound);
     /// The end of a batch. Sums are rounded in the order of these calls; not thread-safe.
     void add(ErrorBatch& batch);
-    void add(const ErrorPool& other);
-    void clear();
+    /// Takes all errors over from another pool, which is empty then.
+    void take(ErrorPool& other);
 
     [[nodiscard]] const ErrorSums& sums() const { return sums_; }
     /// Nearest rank, p in (0, 1]; nothing when empty.
@@ -94,10 +94,6 @@ private:
 
     [[nodiscard]] static double value_of(std::size_t bucket);
     void flush(ErrorBatch& batch);
-    /// Calls `visit(bucket, count)` upwards for the buckets of pages that errors fell into, until
-    /// it returns true.
-    template <typename Visit>
-    void visit_buckets(const Visit& visit) const;
 
     // One page an exponent, from calloc: pages that no error falls into cost nothing.
     std::unique_ptr<std::uint64_t[], Free> buckets_;

@@ -7,7 +7,8 @@
 
 namespace lodbench::measure {
 
-HeightPyramid::HeightPyramid(std::span<const float> heights, int rows, int columns) {
+HeightPyramid::HeightPyramid(std::span<const float> heights, int rows, int columns,
+                             const std::function<void()>& forget) {
     int block_rows = rows - 1;
     int block_columns = columns - 1;
     std::size_t count = 0;
@@ -21,11 +22,12 @@ HeightPyramid::HeightPyramid(std::span<const float> heights, int rows, int colum
         }
     }
     ranges_.resize(count);
-    add_finest(heights, rows, columns);
+    add_finest(heights, rows, columns, forget);
     for (int level = kFinest + 1; level <= coarsest(); ++level) add_coarser(level);
 }
 
-void HeightPyramid::add_finest(std::span<const float> heights, int rows, int columns) {
+void HeightPyramid::add_finest(std::span<const float> heights, int rows, int columns,
+                               const std::function<void()>& forget) {
     constexpr int kWidth = 1 << kFinest;
     const Level& level = levels_[kFinest];
     tbb::parallel_for(0, level.rows, [&](int block_row) {
@@ -46,6 +48,7 @@ void HeightPyramid::add_finest(std::span<const float> heights, int rows, int col
             }
             out[block_column] = range;
         }
+        if (forget) forget();
     });
 }
 

@@ -2,6 +2,7 @@
 // The least and greatest height of square blocks of cells, level upon level.
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,9 @@ public:
     static constexpr int kFinest = 2;
 
     /// `heights`: rows * columns samples in metres, row by row, both counts at least 2; not kept.
-    HeightPyramid(std::span<const float> heights, int rows, int columns);
+    /// `forget`: as for ReferenceTerrain.
+    HeightPyramid(std::span<const float> heights, int rows, int columns,
+                  const std::function<void()>& forget = {});
 
     /// The level whose only block is the whole grid; at least kFinest.
     [[nodiscard]] int coarsest() const { return int(levels_.size()) - 1; }
@@ -46,7 +49,8 @@ private:
         int rows = 0;
         int columns = 0;
     };
-    void add_finest(std::span<const float> heights, int rows, int columns);
+    void add_finest(std::span<const float> heights, int rows, int columns,
+                    const std::function<void()>& forget);
     void add_coarser(int level);
 
     std::vector<Level> levels_;

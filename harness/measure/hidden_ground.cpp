@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace lodbench::measure {
 
@@ -60,6 +61,19 @@ struct PlanView {
         return low <= left && high >= right;
     }
 };
+
+/// Bit j of word i becomes bit i of word j: ever smaller squares change places across the diagonal
+/// (Warren: Hacker's Delight, 2nd edition, 2012, section 7-3).
+void transpose(std::array<std::uint64_t, 64>& words) {
+    std::uint64_t low = 0x00000000FFFFFFFF;
+    for (unsigned side = 32; side > 0; side /= 2, low ^= low << side) {
+        for (unsigned i = 0; i < 64; i = (i + side + 1) & ~side) {
+            const std::uint64_t change = (words[i] >> side ^ words[i + side]) & low;
+            words[i] ^= change << side;
+            words[i + side] ^= change;
+        }
+    }
+}
 
 }  // namespace
 
@@ -119,6 +133,7 @@ public:
             hide_samples(line, distance);
             // The rim of a sample's own cells hides nothing where it is the border of the extent.
             if (line > 0 && line + 1 < q_.lines && distance >= q_.nearest) raise(line, distance);
+            if (line % kSquare == 0) terrain_.forget();
         }
     }
 
@@ -136,22 +151,35 @@ private:
         const double half = q_.sectors / 2.0;
         const double inverse = 1 / distance;
         const double margin = q_.tolerance / q_.nearest;
+        int word_index = from / 64;
+        std::uint64_t word = 0;
         for (int across = from; across <= to; ++across) {
+            if (across / 64 != word_index) {
+                add(line, std::exchange(word_index, across / 64), std::exchange(word, 0));
+            }
             const double offset = across - q_.eye_across;
-            // A diagonal belongs to one quadrant alone: rows'. Compared before any rounding, so
-            // that no sample is in two, whose tasks would write it at once.
+            // A diagonal belongs to one quadrant alone: rows'.
             if (!(q_.columns ? std::abs(offset) < distance : std::abs(offset) <= distance))
                 continue;
             const int sector = std::min(int((offset * inverse + 1) * half), q_.sectors - 1);
             if (sector < first_ || sector >= end_) continue;
-            const std::size_t index = q_.index(line, across);
-            const double rise = (double(q_.heights[index]) - q_.eye_z) * inverse;
+            const double rise = (double(q_.heights[q_.index(line, across)]) - q_.eye_z) * inverse;
             const double horizon = horizon_[std::size_t(sector - first_)];
             if (rise + kRounding * std::abs(rise) <
                 horizon - kRounding * std::abs(horizon) - margin) {
-                hidden_.samples_[index] = 1;
+                word |= std::uint64_t{1} << unsigned(across % 64);
             }
         }
+        add(line, word_index, word);
+    }
+
+    /// The first and the last word of a task's stretch may be another's as well.
+    void add(int line, int index, std::uint64_t bits) {
+        if (bits == 0) return;
+        Lines& lines = q_.columns ? hidden_.by_columns_ : hidden_.by_rows_;
+        std::atomic_ref<std::uint64_t>(
+            lines.bits[std::size_t(line) * std::size_t(lines.words) + std::size_t(index)])
+            .fetch_or(bits, std::memory_order_relaxed);
     }
 
     /// The edges of a line of samples, at each border between two sectors and at the samples
@@ -265,6 +293,22 @@ private:
     std::vector<int> row_;
 };
 
+HiddenGround::Square HiddenGround::square(int row, int column) const {
+    Square bits{};
+    const int columns = int(by_columns_.bits.size() / std::size_t(by_columns_.words));
+    const int end = std::min((column + 1) * kSquare, columns);
+    for (int i = column * kSquare; i < end; ++i) {
+        bits[std::size_t(i - column * kSquare)] = by_columns_.word(i, row);
+    }
+    transpose(bits);
+    const int rows = int(by_rows_.bits.size() / std::size_t(by_rows_.words));
+    const int last = std::min((row + 1) * kSquare, rows);
+    for (int i = row * kSquare; i < last; ++i) {
+        bits[std::size_t(i - row * kSquare)] |= by_rows_.word(i, column);
+    }
+    return bits;
+}
+
 bool HiddenGround::looks_from_above(const ReferenceTerrain& terrain, const Camera& camera) const {
     const glm::dvec2 tangents = camera.half_tangents();
     const double radius = 1.01 * camera.near_plane * std::sqrt(1 + glm::dot(tangents, tangents));
@@ -275,9 +319,9 @@ bool HiddenGround::looks_from_above(const ReferenceTerrain& terrain, const Camer
 }
 
 HiddenGround::HiddenGround(const ReferenceTerrain& terrain, const Camera& camera)
-    : columns_(terrain.info().columns),
-      block_columns_((terrain.info().columns - 2) / kBlockCells + 1),
-      samples_(terrain.heights().size()) {
+    : block_columns_((terrain.info().columns - 2) / kBlockCells + 1),
+      by_rows_(terrain.info().rows, terrain.info().columns),
+      by_columns_(terrain.info().columns, terrain.info().rows) {
     const TerrainInfo& info = terrain.info();
     const std::size_t block_count =
         std::size_t(block_columns_) * std::size_t((info.rows - 2) / kBlockCells + 1);

@@ -11,6 +11,7 @@
 //
 // All errors are on one side: what is called hidden is hidden.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -24,14 +25,21 @@ public:
     /// Cells along the edge of a block.
     static constexpr int kBlockCells = 4;
 
-    /// Takes a byte a sample and a sixteenth for the blocks. Parallel.
+    /// Takes two bits a sample and a byte for each of the blocks. Parallel.
     HiddenGround(const ReferenceTerrain& terrain, const Camera& camera);
 
     /// True only where `ReferenceTerrain::sees` is false for this camera, at samples in its
     /// frustum.
     [[nodiscard]] bool sample(int row, int column) const {
-        return samples_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)] != 0;
+        return by_rows_.holds(row, column) || by_columns_.holds(column, row);
     }
+
+    /// Rows and columns of samples in a square of `Square`.
+    static constexpr int kSquare = 64;
+    using Square = std::array<std::uint64_t, kSquare>;
+    /// The samples from (kSquare * row, kSquare * column) on at once: a word a row, the
+    /// westernmost sample in its lowest bit. Bits beyond the grid are 0.
+    [[nodiscard]] Square square(int row, int column) const;
 
     /// Whether no part of the block with the cells from (kBlockCells * row, kBlockCells * column)
     /// on can reach a pixel: it lies out of view or a pixel's width below the horizon, so that no
@@ -49,9 +57,23 @@ private:
     [[nodiscard]] bool looks_from_above(const ReferenceTerrain& terrain,
                                         const Camera& camera) const;
 
-    int columns_;
+    /// A bit a sample, by the lines of samples that a quadrant's lines of sight cross: a task's
+    /// samples lie together, and few of its words are another's as well.
+    struct Lines {
+        Lines(int lines, int acrosses)
+            : words((acrosses + 63) / 64), bits(std::size_t(lines) * std::size_t(words)) {}
+        [[nodiscard]] std::uint64_t word(int line, int index) const {
+            return bits[std::size_t(line) * std::size_t(words) + std::size_t(index)];
+        }
+        [[nodiscard]] bool holds(int line, int across) const {
+            return (word(line, across / 64) >> unsigned(across % 64) & 1U) != 0;
+        }
+        int words;  ///< of a line
+        std::vector<std::uint64_t> bits;
+    };
+
     int block_columns_;
-    std::vector<std::uint8_t> samples_;
+    Lines by_rows_, by_columns_;
     std::vector<std::uint8_t> blocks_in_sight_;
 };
 

@@ -107,12 +107,11 @@ private:
     /// From a point at `place` to the true interval above or below it, in pixels, less what the
     /// rounding of captured positions makes of it on steep ground: see the header.
     [[nodiscard]] float distance_to_truth(const glm::dvec3& point, const glm::dvec2& place,
-                                          Row& row) const {
+                                          const DrawnSurface::Rounding& rounding, Row& row) const {
         const HeightInterval truth = terrain_.interval(place);
         if (point.z >= truth.low && point.z <= truth.high) return 0;
         PixelProjection::Distance distance = distance_to(truth, point);
         if (distance.px > kSettledPx) {
-            const DrawnSurface::Rounding rounding = surface_.rounding(place);
             HeightInterval around = terrain_.interval_within(place, rounding.plan);
             around = {around.low - rounding.height, around.high + rounding.height};
             const PixelProjection::Distance least = distance_to(around, point);
@@ -131,18 +130,20 @@ private:
     /// NaN where the depth cannot tell.
     [[nodiscard]] float drawn_error(std::size_t x, std::size_t y, double depth, Row& row) const {
         glm::dvec3 point = pixels_.eye() + ray(x, y) * depth;
-        const std::optional<double> surface = surface_.height(on_extent(point));
+        DrawnSurface::Look surface = surface_.look(on_extent(point));
         // As its error will be measured: straight up or down, also where it lies beyond the border.
-        if (!surface || pixels_between({point.x, point.y, *surface}, point) > kSettledPx) {
+        if (!surface.height ||
+            pixels_between({point.x, point.y, *surface.height}, point) > kSettledPx) {
             const Slack slack = slack_of(x, y, depth);
             if (const auto drawn = point_on_surface(x, y, depth, slack)) {
                 point = *drawn;
+                surface = surface_.look(on_extent(point));
             } else if (error_is_uncertain(ray(x, y), depth, slack, point)) {
                 ++row.undecided;
                 return kNothing;
             }
         }
-        return distance_to_truth(point, on_extent(point), row);
+        return distance_to_truth(point, on_extent(point), surface.rounding, row);
     }
 
     /// By how much the rasteriser may have drawn beside a pixel's ray and its depth.
@@ -248,9 +249,9 @@ private:
                                         Row& row) const {
         const glm::dvec3 point = pixels_.eye() + ray(x, y) * depth;
         const glm::dvec2 place = on_extent(point);
-        const std::optional<double> drawn = surface_.height(place);
-        if (!drawn) return std::numeric_limits<float>::infinity();
-        return distance_to_truth({place.x, place.y, *drawn}, place, row);
+        const DrawnSurface::Look drawn = surface_.look(place);
+        if (!drawn.height) return std::numeric_limits<float>::infinity();
+        return distance_to_truth({place.x, place.y, *drawn.height}, place, drawn.rounding, row);
     }
 
     [[nodiscard]] bool reference_shows(std::size_t x, std::size_t y, const ReferenceHit& hit,
@@ -377,6 +378,7 @@ PixelErrors measure_pixels(const ReferenceTerrain& terrain, const DrawnSurface& 
     const PixelMeter meter(terrain, surface, camera, hits, depth);
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         meter.measure_row(y, bound, pool, errors, shows, rows[y]);
+        terrain.forget();
     });
     for (PixelMeter::Row& row : rows) {
         pool.add(row.errors);

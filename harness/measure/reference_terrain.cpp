@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "api/error.h"
 #include "measure/grid_cell.h"
@@ -158,8 +159,12 @@ std::span<const float> checked(std::span<const float> heights, const TerrainInfo
 
 }  // namespace
 
-ReferenceTerrain::ReferenceTerrain(std::span<const float> heights, const TerrainInfo& info)
-    : heights_(checked(heights, info)), info_(info), pyramid_(heights, info.rows, info.columns) {
+ReferenceTerrain::ReferenceTerrain(std::span<const float> heights, const TerrainInfo& info,
+                                   std::function<void()> forget)
+    : heights_(checked(heights, info)),
+      info_(info),
+      forget_(std::move(forget)),
+      pyramid_(heights, info.rows, info.columns, forget_) {
     const glm::dvec2 cells(info.columns - 1, info.rows - 1);
     const glm::dvec2 reach =
         glm::max(glm::abs(info.extent_min()), glm::abs(info.extent_max())) / info.spacing;

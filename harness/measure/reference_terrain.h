@@ -3,6 +3,7 @@
 // the interval spanned by the two diagonals of the cell. Double precision, no GL, no code shared
 // with any method: what methods are measured against.
 
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
@@ -32,11 +33,17 @@ public:
     /// `heights`: info.rows * info.columns finite samples in metres, row by row, row 0 the north
     /// edge; they are not copied and must outlive this object. Builds a pyramid of the least and
     /// greatest height of blocks of cells, in parallel, in a sixth of the samples' bytes. Throws
-    /// ContractError where the heights are of another number.
-    ReferenceTerrain(std::span<const float> heights, const TerrainInfo& info);
+    /// ContractError where the heights are of another number. `forget` is called by what works
+    /// through the samples, from several threads, after each part of them: heights that are mapped
+    /// from a file may let the part go.
+    ReferenceTerrain(std::span<const float> heights, const TerrainInfo& info,
+                     std::function<void()> forget = {});
 
     [[nodiscard]] const TerrainInfo& info() const { return info_; }
     [[nodiscard]] std::span<const float> heights() const { return heights_; }
+    void forget() const {
+        if (forget_) forget_();
+    }
     [[nodiscard]] double height(int row, int column) const;
     /// Position of a sample in the world.
     [[nodiscard]] glm::dvec3 sample(int row, int column) const;
@@ -80,6 +87,7 @@ private:
 
     std::span<const float> heights_;
     TerrainInfo info_;
+    std::function<void()> forget_;
     HeightPyramid pyramid_;
     glm::dvec2 border_{0.0};  ///< cells that a position on the border may be beyond it by rounding
     double rounding_ = 0;     ///< metres that a line may be under the ground by rounding

@@ -3,7 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
+#include <atomic>
+#include <bit>
 
 #include "measure/box_in_view.h"
 #include "measure/pixel_projection.h"
@@ -12,44 +13,60 @@ namespace lodbench::measure {
 
 namespace {
 
-constexpr std::size_t kWord = 64;  // samples a task's boundary must not divide
+constexpr std::size_t kWord = 64;
 constexpr double kSlack = 1e-9;
+
+/// Sets the bits of `run` from bit `first` on. Neighbours' runs share words.
+void set_bits(std::vector<std::uint64_t>& words, std::size_t first, std::uint64_t run) {
+    const auto add = [&](std::size_t word, std::uint64_t bits) {
+        if (bits == 0) return;
+        std::atomic_ref<std::uint64_t>(words[word]).fetch_or(bits, std::memory_order_relaxed);
+    };
+    const unsigned shift = first % kWord;
+    add(first / kWord, run << shift);
+    if (shift > 0) add(first / kWord + 1, run >> (kWord - shift));
+}
 
 }  // namespace
 
 std::vector<std::uint64_t> seen_samples(const ReferenceTerrain& terrain, const Camera& camera,
                                         const HiddenGround& hidden) {
+    constexpr int kSide = HiddenGround::kSquare;
     const TerrainInfo& info = terrain.info();
     const PixelProjection pixels(camera);
     const BoxInView in_view(camera, kSlack);
-    const std::size_t columns = std::size_t(info.columns);
+    const int square_rows = (info.rows + kSide - 1) / kSide;
+    const int square_columns = (info.columns + kSide - 1) / kSide;
     std::vector<std::uint64_t> seen((terrain.heights().size() + kWord - 1) / kWord);
-    // Words, not rows: a word may hold the end of one row and the beginning of the next.
-    constexpr std::size_t kRun = 64;  // words a task
-    tbb::parallel_for(std::size_t{0}, (seen.size() + kRun - 1) / kRun, [&](std::size_t task) {
-        const std::size_t begin = task * kRun * kWord;
-        const std::size_t end = std::min(begin + kRun * kWord, terrain.heights().size());
-        for (std::size_t first = begin; first < end;) {
-            const int row = int(first / columns);
-            const int column = int(first % columns);
-            const int count = int(std::min({end - first, columns - first % columns, kWord}));
-            const HeightInterval heights = terrain.range({row, column, 1, count});
-            const glm::dvec2 west = info.position(row, column);
-            const glm::dvec2 east = info.position(row, column + count - 1);
-            if (in_view({west, heights.low}, {east, heights.high})) {
-                for (int i = column; i < column + count; ++i) {
-                    if (hidden.sample(row, i)) continue;
-                    const glm::dvec3 local = pixels.local(terrain.sample(row, i));
-                    if (!pixels.in_view(local) ||
-                        !terrain.sees(camera.position, camera.near_plane / local.z, row, i)) {
-                        continue;
-                    }
-                    const std::size_t index = first + std::size_t(i - column);
-                    seen[index / kWord] |= std::uint64_t{1} << (index % kWord);
+    tbb::parallel_for(0, square_rows * square_columns, [&](int index) {
+        const int square_row = index / square_columns;
+        const int square_column = index % square_columns;
+        const SampleRect rect{square_row * kSide, square_column * kSide,
+                              std::min(kSide, info.rows - square_row * kSide),
+                              std::min(kSide, info.columns - square_column * kSide)};
+        const HeightInterval heights = terrain.range(rect);
+        const glm::dvec2 south_west = info.position(rect.row + rect.rows - 1, rect.column);
+        const glm::dvec2 north_east = info.position(rect.row, rect.column + rect.columns - 1);
+        if (!in_view({south_west, heights.low}, {north_east, heights.high})) return;
+        const HiddenGround::Square hides = hidden.square(square_row, square_column);
+        const std::uint64_t all = ~std::uint64_t{0} >> unsigned(kSide - rect.columns);
+        for (int row = rect.row; row < rect.row + rect.rows; ++row) {
+            std::uint64_t run = 0;
+            for (std::uint64_t left = all & ~hides[std::size_t(row - rect.row)]; left != 0;
+                 left &= left - 1) {
+                const int column = rect.column + std::countr_zero(left);
+                const glm::dvec3 local = pixels.local(terrain.sample(row, column));
+                if (!pixels.in_view(local) ||
+                    !terrain.sees(camera.position, camera.near_plane / local.z, row, column)) {
+                    continue;
                 }
+                run |= left & -left;
             }
-            first += std::size_t(count);
+            if (run == 0) continue;
+            set_bits(seen, std::size_t(row) * std::size_t(info.columns) + std::size_t(rect.column),
+                     run);
         }
+        terrain.forget();
     });
     return seen;
 }
@@ -63,6 +80,7 @@ std::vector<ReferenceHit> reference_hits(const ReferenceTerrain& terrain, const 
             hits[std::size_t(y) * std::size_t(width) + std::size_t(x)] =
                 terrain.cast(pixels.eye(), pixels.direction(x + 0.5, y + 0.5), camera.near_plane);
         }
+        terrain.forget();
     });
     return hits;
 }

@@ -19,33 +19,53 @@ constexpr int kBlock =
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 1e-9;
 
-/// The range of several displacement fields over a block; nothing covered leaves it at zero.
-HeightInterval displacement_range(std::span<const std::span<const float>> fields,
-                                  const SampleRect& rect, int columns) {
+/// Displacements of a block's samples by several frames, row by row.
+template <std::size_t kFields>
+using Displaced = std::array<std::vector<float>, kFields>;
+
+/// Their range; nothing covered leaves it at zero.
+template <std::size_t kFields>
+HeightInterval range_of(const Displaced<kFields>& fields, const SampleRect& rect) {
     float low = 0;
     float high = 0;
-    for (const auto& field : fields) {
-        for (int row = rect.row; row < rect.row + rect.rows; ++row) {
-            const float* from =
-                &field[std::size_t(row) * std::size_t(columns) + std::size_t(rect.column)];
-            for (int i = 0; i < rect.columns; ++i) {
-                // Comparisons with NaN are false.
-                low = from[i] < low ? from[i] : low;
-                high = from[i] > high ? from[i] : high;
-            }
+    const std::size_t count = std::size_t(rect.rows) * std::size_t(rect.columns);
+    for (const std::vector<float>& field : fields) {
+        for (std::size_t i = 0; i < count; ++i) {
+            // Comparisons with NaN are false.
+            low = field[i] < low ? field[i] : low;
+            high = field[i] > high ? field[i] : high;
         }
     }
     return {low, high};
 }
 
-/// Whether a block may reach into the frustum.
+/// Whether a block of heights within an interval may reach into the frustum.
 bool may_be_in_view(const ReferenceTerrain& terrain, const BoxInView& in_view,
-                    const SampleRect& rect, const HeightInterval& displacement) {
+                    const SampleRect& rect, const HeightInterval& heights) {
+    const glm::dvec2 south_west = terrain.info().position(rect.row + rect.rows - 1, rect.column);
+    const glm::dvec2 north_east = terrain.info().position(rect.row, rect.column + rect.columns - 1);
+    return in_view({south_west, heights.low}, {north_east, heights.high});
+}
+
+/// Fills `displaced` for a block; false where the block is out of view.
+template <std::size_t kFields>
+bool find_in_view(const ReferenceTerrain& terrain, const BoxInView& in_view,
+                  const std::array<const DrawnSamples*, kFields>& fields, const SampleRect& rect,
+                  Displaced<kFields>& displaced) {
     const HeightInterval heights = terrain.range(rect);
-    const glm::dvec3 south_west = terrain.sample(rect.row + rect.rows - 1, rect.column);
-    const glm::dvec3 north_east = terrain.sample(rect.row, rect.column + rect.columns - 1);
-    return in_view({glm::dvec2(south_west), heights.low + displacement.low},
-                   {glm::dvec2(north_east), heights.high + displacement.high});
+    // Before anything is drawn, what can be told without.
+    HeightInterval all = heights;
+    bool bounded = true;
+    for (const DrawnSamples* field : fields) {
+        const std::optional<HeightInterval> bounds = field->bounds();
+        bounded = bounded && bounds;
+        if (bounds) all = {std::min(all.low, bounds->low), std::max(all.high, bounds->high)};
+    }
+    if (bounded && !may_be_in_view(terrain, in_view, rect, all)) return false;
+    for (std::size_t i = 0; i < kFields; ++i) fields[i]->copy(terrain, rect, displaced[i]);
+    const HeightInterval displacement = range_of(displaced, rect);
+    return may_be_in_view(terrain, in_view, rect,
+                          {heights.low + displacement.low, heights.high + displacement.high});
 }
 
 /// Points of a run of samples side by side, in a camera's frame. One array a coordinate, and no
@@ -78,31 +98,39 @@ Run points_of(const ReferenceTerrain& terrain, const PixelProjection& pixels,
     return run;
 }
 
-/// Calls `body(partial, samples)` for all runs of samples of the blocks that may be in view, one
-/// row of blocks a task, and returns the rows' partials in order.
-template <typename Partial, typename Body>
+/// Calls `body(partial, samples, displaced)` for all runs of samples of the blocks that may be in
+/// view, one row of blocks a task, and returns the rows' partials in order. `displaced[i]`: of the
+/// run's samples by `fields[i]`.
+template <typename Partial, std::size_t kFields, typename Body>
 std::vector<Partial> for_samples(const ReferenceTerrain& terrain, const Camera& camera,
-                                 std::span<const std::span<const float>> fields, const Body& body) {
+                                 const std::array<const DrawnSamples*, kFields>& fields,
+                                 const Body& body) {
     const TerrainInfo& info = terrain.info();
     const BoxInView in_view(camera, kSlack);
     const int block_rows = (info.rows + kBlock - 1) / kBlock;
     std::vector<Partial> partials(std::size_t(block_rows), Partial{});
     tbb::parallel_for(0, block_rows, [&](int block_row) {
         Partial& partial = partials[std::size_t(block_row)];
+        Displaced<kFields> displaced;
+        for (std::vector<float>& field : displaced) field.resize(std::size_t{kBlock} * kBlock);
         for (int first = 0; first < info.columns; first += kBlock) {
             const SampleRect rect{block_row * kBlock, first,
                                   std::min(kBlock, info.rows - block_row * kBlock),
                                   std::min(kBlock, info.columns - first)};
-            if (!may_be_in_view(terrain, in_view, rect,
-                                displacement_range(fields, rect, info.columns))) {
-                continue;
-            }
-            for (int row = rect.row; row < rect.row + rect.rows; ++row) {
+            if (!find_in_view(terrain, in_view, fields, rect, displaced)) continue;
+            for (int row = 0; row < rect.rows; ++row) {
+                std::array<const float*, kFields> of_run;
+                for (std::size_t i = 0; i < kFields; ++i) {
+                    of_run[i] = &displaced[i][std::size_t(row) * std::size_t(rect.columns)];
+                }
                 body(partial,
-                     Samples{row, first, rect.columns,
-                             std::size_t(row) * std::size_t(info.columns) + std::size_t(first)});
+                     Samples{rect.row + row, first, rect.columns,
+                             std::size_t(rect.row + row) * std::size_t(info.columns) +
+                                 std::size_t(first)},
+                     of_run);
             }
         }
+        terrain.forget();
     });
     return partials;
 }
@@ -176,31 +204,31 @@ RunErrors errors_of(const ReferenceTerrain& terrain, const PixelProjection& pixe
 }  // namespace
 
 SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& camera,
-                             std::span<const float> displacements, double bound, ErrorPool& all,
+                             const DrawnSamples& drawn, double bound, ErrorPool& all,
                              const std::optional<VisibleErrors>& visible) {
     struct Partial {
         SampleErrors errors;
         ErrorBatch all, visible;
     };
     const PixelProjection pixels(camera);
-    const std::array fields{displacements};
-    auto partials = for_samples<Partial>(
-        terrain, camera, fields, [&](Partial& partial, const Samples& samples) {
-            const RunErrors errors =
-                errors_of(terrain, pixels, samples, &displacements[samples.first]);
+    auto partials = for_samples<Partial, 1>(
+        terrain, camera, {&drawn},
+        [&](Partial& partial, const Samples& samples,
+            const std::array<const float*, 1>& displaced) {
+            const float* const displacements = displaced[0];
+            const RunErrors errors = errors_of(terrain, pixels, samples, displacements);
             for (int i = 0; i < samples.count; ++i) {
                 const double px = errors.px[std::size_t(i)];
                 if (px < 0) continue;
-                const std::size_t index = samples.first + std::size_t(i);
                 const WorstSample sample{px, samples.row, samples.column + i};
                 all.tally(partial.all, px, bound);
                 if (errors.clipped[std::size_t(i)]) ++partial.errors.clipped;
                 keep_worst(sample, partial.errors.worst);
-                if (const float displacement = displacements[index]; !std::isnan(displacement)) {
+                if (const float displacement = displacements[i]; !std::isnan(displacement)) {
                     ++partial.errors.heights.count;
                     partial.errors.heights.sum_of_squares += double(displacement) * displacement;
                 }
-                if (visible && visible->view.sees(index)) {
+                if (visible && visible->view.sees(samples.first + std::size_t(i))) {
                     visible->pool.tally(partial.visible, px, bound);
                     keep_worst(sample, partial.errors.worst_visible);
                 }
@@ -227,11 +255,11 @@ Popping measure_popping(const ReferenceTerrain& terrain, const DrawnFrame& earli
     const PixelProjection pixels(later.camera);
     const PixelProjection pixels_before(earlier.camera);
     const glm::dvec3 up = pixels.turned({0, 0, 1});
-    const std::array fields{earlier.displacements, later.displacements};
-    auto partials = for_samples<Partial>(
-        terrain, later.camera, fields, [&](Partial& partial, const Samples& samples) {
-            const float* befores = &earlier.displacements[samples.first];
-            const float* afters = &later.displacements[samples.first];
+    auto partials = for_samples<Partial, 2>(
+        terrain, later.camera, {&earlier.drawn, &later.drawn},
+        [&](Partial& partial, const Samples& samples,
+            const std::array<const float*, 2>& displaced) {
+            const auto [befores, afters] = displaced;
             const int count = samples.count;
             const Run truth = points_of(terrain, pixels, samples);
             const Run now = raised(truth, up, afters, count);
@@ -277,43 +305,50 @@ Popping measure_popping(const ReferenceTerrain& terrain, const DrawnFrame& earli
 }
 
 std::vector<float> map_of_errors(const ReferenceTerrain& terrain, const Camera& camera,
-                                 std::span<const float> displacements, int map_rows,
-                                 int map_columns) {
+                                 const DrawnSamples& drawn, int map_rows, int map_columns) {
     const TerrainInfo& info = terrain.info();
     const PixelProjection pixels(camera);
-    const BoxInView in_view(camera, kSlack);
-    const std::array fields{displacements};
+    // Sample i of n lies in cell floor(i * cells / n).
+    const auto cell_of = [](int sample, int cells, int samples) {
+        return std::size_t(std::int64_t(sample) * cells / samples);
+    };
+    struct Partial {
+        std::size_t first = 0;  ///< row of the map
+        std::vector<float> rows;
+    };
+    const auto keep_greatest = [](float px, float& cell) {
+        if (!(px <= cell)) cell = px;  // also over NaN
+    };
+    const auto partials = for_samples<Partial, 1>(
+        terrain, camera, {&drawn},
+        [&](Partial& partial, const Samples& samples,
+            const std::array<const float*, 1>& displaced) {
+            if (partial.rows.empty()) {
+                const int first = samples.row / kBlock * kBlock;
+                const int last = std::min(first + kBlock, info.rows) - 1;
+                partial.first = cell_of(first, map_rows, info.rows);
+                partial.rows.assign((cell_of(last, map_rows, info.rows) + 1 - partial.first) *
+                                        std::size_t(map_columns),
+                                    std::numeric_limits<float>::quiet_NaN());
+            }
+            const RunErrors errors = errors_of(terrain, pixels, samples, displaced[0]);
+            const std::size_t row = cell_of(samples.row, map_rows, info.rows) - partial.first;
+            for (int i = 0; i < samples.count; ++i) {
+                const auto px = float(errors.px[std::size_t(i)]);
+                if (px < 0) continue;
+                keep_greatest(px,
+                              partial.rows[row * std::size_t(map_columns) +
+                                           cell_of(samples.column + i, map_columns, info.columns)]);
+            }
+        });
     std::vector<float> map(std::size_t(map_rows) * std::size_t(map_columns),
                            std::numeric_limits<float>::quiet_NaN());
-    // Sample i of n lies in cell floor(i * cells / n).
-    const auto first_in = [](int cell, int cells, int samples) {
-        return int((std::int64_t(cell) * samples + cells - 1) / cells);
-    };
-    tbb::parallel_for(0, map_rows, [&](int map_row) {
-        const int end = first_in(map_row + 1, map_rows, info.rows);
-        for (int row = first_in(map_row, map_rows, info.rows); row < end; ++row) {
-            for (int first = 0; first < info.columns; first += kBlock) {
-                const SampleRect rect{row, first, 1, std::min(kBlock, info.columns - first)};
-                if (!may_be_in_view(terrain, in_view, rect,
-                                    displacement_range(fields, rect, info.columns))) {
-                    continue;
-                }
-                const Samples samples{
-                    row, first, rect.columns,
-                    std::size_t(row) * std::size_t(info.columns) + std::size_t(first)};
-                const RunErrors errors =
-                    errors_of(terrain, pixels, samples, &displacements[samples.first]);
-                for (int i = 0; i < samples.count; ++i) {
-                    const auto px = float(errors.px[std::size_t(i)]);
-                    if (px < 0) continue;
-                    const auto map_column = std::int64_t(first + i) * map_columns / info.columns;
-                    float& cell = map[std::size_t(map_row) * std::size_t(map_columns) +
-                                      std::size_t(map_column)];
-                    if (!(px <= cell)) cell = px;  // also over NaN
-                }
-            }
+    for (const Partial& partial : partials) {
+        for (std::size_t i = 0; i < partial.rows.size(); ++i) {
+            if (std::isnan(partial.rows[i])) continue;
+            keep_greatest(partial.rows[i], map[partial.first * std::size_t(map_columns) + i]);
         }
-    });
+    }
     return map;
 }
 

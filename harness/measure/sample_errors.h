@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "api/camera.h"
+#include "measure/drawn_samples.h"
 #include "measure/error_pool.h"
 #include "measure/reference_terrain.h"
 #include "measure/reference_view.h"
@@ -45,12 +45,11 @@ struct SampleErrors {
 };
 
 /// Screen error: |pi(x, y, h) - pi(x, y, l_f)| in pixels of every sample in view, +infinity where
-/// `displacements` (l_f - h in metres, as DrawnSurface gives it) is NaN. `all` takes every error,
+/// nothing that was drawn covers it. `all` takes every error,
 /// `visible`, where there is one, those of the samples that its view sees. `bound`: the claimed
 /// bound, +infinity without one. Parallel; the same to the bit each time.
 [[nodiscard]] SampleErrors measure_samples(const ReferenceTerrain& terrain, const Camera& camera,
-                                           std::span<const float> displacements, double bound,
-                                           ErrorPool& all,
+                                           const DrawnSamples& drawn, double bound, ErrorPool& all,
                                            const std::optional<VisibleErrors>& visible = {});
 
 /// What popped between two frames.
@@ -63,7 +62,7 @@ struct Popping {
 /// What a frame drew, and from where.
 struct DrawnFrame {
     const Camera& camera;
-    std::span<const float> displacements;  ///< as DrawnSurface gives them
+    const DrawnSamples& drawn;
 };
 
 /// Popping: |pi'(x, y, l_f) - pi'(x, y, l_f+1)| in pixels, pi' the later frame's projection, at the
@@ -76,8 +75,7 @@ struct DrawnFrame {
 /// The greatest screen error in each cell of a grid of map_rows x map_columns over the terrain, row
 /// 0 the north: NaN where no sample is in view, +infinity where one is uncovered. For pictures.
 [[nodiscard]] std::vector<float> map_of_errors(const ReferenceTerrain& terrain,
-                                               const Camera& camera,
-                                               std::span<const float> displacements, int map_rows,
-                                               int map_columns);
+                                               const Camera& camera, const DrawnSamples& drawn,
+                                               int map_rows, int map_columns);
 
 }  // namespace lodbench::measure

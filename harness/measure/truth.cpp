@@ -55,8 +55,8 @@ void keep_worst(const WorstSample& candidate, int frame, double& px,
 }  // namespace
 
 TruthMeter::TruthMeter(std::span<const float> heights, const TerrainInfo& info,
-                       std::optional<double> claimed, Extent extent)
-    : terrain_(heights, info),
+                       std::optional<double> claimed, Extent extent, std::function<void()> forget)
+    : terrain_(heights, info, std::move(forget)),
       claimed_(claimed),
       extent_(extent),
       bound_(claimed.value_or(kInfinity)) {
@@ -70,18 +70,20 @@ void TruthMeter::take(int frame, const Camera& camera, CapturedSurface&& surface
     now_.camera = camera;
     now_.measured = false;
     now_.height_rmse.reset();
-    surface_.reset();  // the old one's memory first
-    surface_.emplace(std::move(surface), terrain_.info());
+    const bool pops = before_.measured && before_.frame + 1 == frame;
+    // The old ones' memory first.
+    now_.drawn.reset();
+    if (!pops) before_.drawn.reset();
+    surface_.reset();
+    surface_ = std::make_shared<const DrawnSurface>(std::move(surface), terrain_.info());
     if (extent_ == Extent::pixels) return;
-    now_.displacements.resize(terrain_.heights().size());
-    surface_->displacements(terrain_.heights(), now_.displacements);
-    if (!before_.measured || before_.frame + 1 != frame) return;
+    now_.drawn.emplace(surface_, terrain_);
+    if (!pops) return;
 
-    frame_popping_.clear();
-    const Popping popping = measure_popping(terrain_, {before_.camera, before_.displacements},
-                                            {now_.camera, now_.displacements}, frame_popping_);
-    const ErrorSummary summary = frame_popping_.summary(false);
-    popping_.add(frame_popping_);
+    const Popping popping = measure_popping(terrain_, {before_.camera, *before_.drawn},
+                                            {now_.camera, *now_.drawn}, frame_);
+    const ErrorSummary summary = frame_.summary(false);
+    popping_.take(frame_);
     ++popping_frames_;
     total_.popping_over_1px += popping.over_1px;
     total_.popping_covered_once += popping.covered_once;
@@ -99,10 +101,9 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
                                const ReferenceView& view) {
     if (!surface_) throw ContractError("TruthMeter::measure: no frame was taken");
     FrameTruth truth;
-    frame_pixel_.clear();
     PixelErrors pixels =
-        measure_pixels(terrain_, *surface_, now_.camera, view.hits, depth, bound_, frame_pixel_);
-    const ErrorSummary pixel = frame_pixel_.summary(false);
+        measure_pixels(terrain_, *surface_, now_.camera, view.hits, depth, bound_, frame_);
+    const ErrorSummary pixel = frame_.summary(false);
     truth.pixel_max_px = pixel.max;
     truth.pixel_p999_px = pixel.p999;
     truth.pixel_rms_px = pixel.rms;
@@ -110,7 +111,7 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
     truth.skirt_pixels = pixels.skirt_pixels;
     truth.silhouette_pixels = pixels.silhouette_pixels;
     truth.silhouette_max_px = pixels.silhouette_max;
-    pixel_.add(frame_pixel_);
+    pixel_.take(frame_);
     keep_worst(worst_pixel(pixels, now_.camera.viewport.width), now_.frame, pixel_worst_px_,
                total_.pixel_worst);
     ++total_.frames;
@@ -137,12 +138,10 @@ FrameTruth TruthMeter::measure(std::span<const float> depth, std::vector<std::ui
 }
 
 void TruthMeter::measure_samples_into(FrameTruth& truth, const ReferenceView& view) {
-    frame_screen_.clear();
-    frame_visible_.clear();
-    const SampleErrors samples =
-        measure_samples(terrain_, now_.camera, now_.displacements, bound_, frame_screen_,
-                        VisibleErrors{view, frame_visible_});
-    const ErrorSummary screen = frame_screen_.summary(false);
+    const SampleErrors samples = measure_samples(terrain_, now_.camera, *now_.drawn, bound_, frame_,
+                                                 VisibleErrors{view, frame_visible_});
+    const ErrorSummary screen = frame_.summary(false);
+    now_.screen = screen;
     const ErrorSummary visible = frame_visible_.summary(false);
     truth.screen_max_px = screen.max;
     truth.screen_p999_px = screen.p999;
@@ -151,8 +150,8 @@ void TruthMeter::measure_samples_into(FrameTruth& truth, const ReferenceView& vi
     truth.visible_p999_px = visible.p999;
     truth.uncovered_samples = screen.uncovered;
     truth.height_rmse_m = rmse(samples.heights);
-    screen_.add(frame_screen_);
-    visible_.add(frame_visible_);
+    screen_.take(frame_);
+    visible_.take(frame_visible_);
     keep_worst(samples.worst, now_.frame, screen_worst_px_, total_.screen_worst);
     keep_worst(samples.worst_visible, now_.frame, visible_worst_px_, total_.visible_worst);
     total_.clipped += samples.clipped;
@@ -195,18 +194,18 @@ void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixe
                               std::numeric_limits<float>::quiet_NaN());
         return;
     }
-    worst_->map_px = map_of_errors(terrain_, now_.camera, now_.displacements, worst_->map_rows,
-                                   worst_->map_columns);
+    worst_->map_px =
+        map_of_errors(terrain_, now_.camera, *now_.drawn, worst_->map_rows, worst_->map_columns);
 }
 
 Fewest TruthMeter::find_fewest(double target_px, ErrorBound bound) const {
     const GreedyTriangulation greedy =
         greedy_triangulation(terrain_, now_.camera, target_px, bound);
-    std::vector<float> displacements(terrain_.heights().size());
-    DrawnSurface(surface_of(greedy, terrain_, now_.camera), terrain_.info())
-        .displacements(terrain_.heights(), displacements);
+    const DrawnSamples drawn(std::make_shared<const DrawnSurface>(
+                                 surface_of(greedy, terrain_, now_.camera), terrain_.info()),
+                             terrain_);
     ErrorPool all;
-    (void)measure_samples(terrain_, now_.camera, displacements, kInfinity, all);
+    (void)measure_samples(terrain_, now_.camera, drawn, kInfinity, all);
     const ErrorSummary errors = all.summary(false);
     const auto measured = bound == ErrorBound::max ? errors.max : errors.p999;
     return {target_px, greedy.in_view, measured.value_or(0)};
@@ -216,7 +215,7 @@ void TruthMeter::find_economy(std::uint64_t triangles) {
     if (!now_.measured || extent_ != Extent::all) {
         throw ContractError("TruthMeter::find_economy: no frame's samples were measured");
     }
-    const ErrorSummary errors = frame_screen_.summary(false);
+    const ErrorSummary& errors = now_.screen;
     if (!errors.max_covered) return;
     Economy& economy = total_.economy.emplace_back();
     economy.frame = now_.frame;

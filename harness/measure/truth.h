@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "measure/capture.h"
+#include "measure/drawn_samples.h"
 #include "measure/error_pool.h"
 #include "measure/greedy_triangulation.h"
 #include "measure/image_difference.h"
@@ -106,10 +109,11 @@ struct TruthSummary {
 
 class TruthMeter {
 public:
-    /// `heights` as for ReferenceTerrain; `claimed`: the method's bound in pixels, where it has
-    /// one.
+    /// `heights` and `forget` as for ReferenceTerrain; `claimed`: the method's bound in pixels,
+    /// where it has one.
     TruthMeter(std::span<const float> heights, const TerrainInfo& info,
-               std::optional<double> claimed, Extent extent = Extent::all);
+               std::optional<double> claimed, Extent extent = Extent::all,
+               std::function<void()> forget = {});
 
     /// What the method drew at `frame`. Where the frame before was measured, what popped between
     /// the two goes into `before`.
@@ -140,8 +144,9 @@ private:
     struct Taken {
         int frame = -1;
         Camera camera;
-        std::vector<float> displacements;
+        std::optional<DrawnSamples> drawn;  ///< nothing where only pixels are measured
         bool measured = false;
+        ErrorSummary screen;  ///< where samples were measured
         std::optional<double> height_rmse;
     };
     void measure_samples_into(FrameTruth& truth, const ReferenceView& view);
@@ -156,9 +161,9 @@ private:
     Extent extent_;
     double bound_;
     Taken now_, before_;
-    std::optional<DrawnSurface> surface_;  ///< of now_
+    std::shared_ptr<const DrawnSurface> surface_;  ///< of now_
     ErrorPool screen_, visible_, pixel_, popping_, realtime_;
-    ErrorPool frame_screen_, frame_visible_, frame_pixel_, frame_popping_;  ///< of one frame
+    ErrorPool frame_, frame_visible_;  ///< of one frame; empty in between
     TruthSummary total_;
     double screen_worst_px_ = -1, visible_worst_px_ = -1, pixel_worst_px_ = -1,
            realtime_worst_px_ = -1;

@@ -27,6 +27,7 @@
 #include "run/timing.h"
 #include "scenario/camera_track.h"
 #include "scenario/scenario.h"
+#include "terrain/mapped_terrain.h"
 #include "terrain/open_terrain.h"
 #include "terrain/toml_file.h"
 
@@ -124,6 +125,8 @@ private:
     [[nodiscard]] bool measures_truth() const {
         return scenario_.measure.truth && spec_.repetition == 0;
     }
+    /// What is measured against; nothing where nothing is.
+    [[nodiscard]] std::shared_ptr<const terrain::WholeTerrain> whole_terrain() const;
     void measure_frame(int frame);
     void shoot(int frame);  ///< the picture that is drawn, and its wireframe
     [[nodiscard]] std::filesystem::path shot_path(const std::string& which) const {
@@ -175,7 +178,9 @@ void Flight::open() {
     const bool stored = std::dynamic_pointer_cast<const terrain::HeightField>(terrain_) == nullptr;
     methods_terrain_ = stored ? terrain::open_terrain(scenario_.terrain) : terrain_;
     // Known before an hour's flight, not after.
-    if (stored && measures_truth()) terrain::require_room_for_whole(terrain_->info());
+    if (stored && measures_truth() && !scenario_.terrain.out_of_core) {
+        terrain::require_room_for_whole(terrain_->info());
+    }
     track_.emplace(scenario_, *terrain_);
     result_.cell.plugin_checksum = plugin_checksum();
     result_.cell.terrain = terrain_->info().name;
@@ -312,8 +317,7 @@ void Flight::fly_in_lockstep() {
     begin_replay(Replay::lockstep);
     // Not before: what it takes is none of the method's.
     signs_.enter(Call::load_terrain);
-    const std::shared_ptr<const terrain::HeightField> truth =
-        measures_truth() ? terrain::whole_field(terrain_) : nullptr;
+    const std::shared_ptr<const terrain::WholeTerrain> truth = whole_terrain();
     signs_.enter(Call::none);
     measurer_ = std::make_unique<FrameMeasurer>(
         *stage_, measures_truth() ? result_.cell.claimed_px : std::nullopt, truth,
@@ -368,6 +372,12 @@ void Flight::fly_in_lockstep() {
             fmt::format("drew no triangle in {} of {} frames", empty, scenario_.frames));
     }
     result_.cell.gpu_bytes = stage_->method_gpu_bytes();
+}
+
+std::shared_ptr<const terrain::WholeTerrain> Flight::whole_terrain() const {
+    if (!measures_truth()) return nullptr;
+    if (!scenario_.terrain.out_of_core) return terrain::whole_field(terrain_);
+    return std::make_shared<const terrain::MappedTerrain>(terrain_, spec_.out);
 }
 
 /// Every n-th frame, and for popping the frame after it.

@@ -12,10 +12,12 @@
 namespace lodbench::run {
 
 FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed,
-                             std::shared_ptr<const terrain::HeightField> truth, ViewCache views,
+                             std::shared_ptr<const terrain::WholeTerrain> truth, ViewCache views,
                              measure::Extent extent)
-    : stage_(&stage), truth_(std::move(truth)), views_(std::move(views)) {
-    if (truth_) meter_.emplace(truth_->samples(), truth_->info(), claimed, extent);
+    : stage_(&stage), truth_(std::move(truth)), views_(std::move(views)), extent_(extent) {
+    if (!truth_) return;
+    meter_.emplace(truth_->samples(), truth_->info(), claimed, extent,
+                   [whole = truth_.get()] { whole->forget(); });
 }
 
 measure::CapturedSurface FrameMeasurer::capture() {
@@ -59,8 +61,12 @@ measure::ReferenceView FrameMeasurer::reference_view() {
     if (auto kept = views_.find(frame_, camera)) return std::move(*kept);
     const measure::HiddenGround hidden(meter_->terrain(), camera);
     stage_->draw_reference_picture(truth_, &hidden);
-    measure::ReferenceView view{measure::seen_samples(meter_->terrain(), camera, hidden),
-                                measure::reference_hits(meter_->terrain(), camera),
+    // Where only pixels are measured, what is seen is for others.
+    std::vector<std::uint64_t> seen;
+    if (extent_ == measure::Extent::all || views_.keeps()) {
+        seen = measure::seen_samples(meter_->terrain(), camera, hidden);
+    }
+    measure::ReferenceView view{std::move(seen), measure::reference_hits(meter_->terrain(), camera),
                                 stage_->read_color()};
     views_.keep(frame_, camera, view);
     return view;
@@ -135,6 +141,7 @@ void FrameMeasurer::write_picture(const std::filesystem::path& path,
                 float(terrain.height(middle(row, worst.map_rows, terrain.info().rows),
                                      middle(column, worst.map_columns, terrain.info().columns))));
         }
+        terrain.forget();
     }
     // A scale to P99.9, so that one pixel does not darken all others; uncovered places have a
     // colour of their own.

@@ -21,7 +21,7 @@ public:
     /// measure against; without it triangles are counted only. `views`: where what a frame shows of
     /// the truth is looked for and kept.
     FrameMeasurer(Stage& stage, std::optional<double> claimed,
-                  std::shared_ptr<const terrain::HeightField> truth, ViewCache views = {},
+                  std::shared_ptr<const terrain::WholeTerrain> truth, ViewCache views = {},
                   measure::Extent extent = measure::Extent::all);
 
     /// Goes on with another stage of the same method over the same terrain.
@@ -49,9 +49,10 @@ private:
     [[nodiscard]] measure::ReferenceView reference_view();  ///< of the frame that was taken last
 
     Stage* stage_;
-    std::shared_ptr<const terrain::HeightField> truth_;  ///< outlives the stage
+    std::shared_ptr<const terrain::WholeTerrain> truth_;  ///< outlives the stage
     std::optional<measure::TruthMeter> meter_;
     ViewCache views_;
+    measure::Extent extent_;
     int frame_ = 0;                    ///< that was taken last
     std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
 };

@@ -255,7 +255,7 @@ void Stage::draw(const View& view) {
     guarded(Call::draw, [&] { method_->draw(view); });
 }
 
-void Stage::draw_reference_picture(const std::shared_ptr<const terrain::HeightField>& whole,
+void Stage::draw_reference_picture(const std::shared_ptr<const terrain::WholeTerrain>& whole,
                                    const measure::HiddenGround* hidden) {
     if (!reference_picture_) {
         reference_picture_ = std::make_unique<ReferencePicture>(*device_, whole);

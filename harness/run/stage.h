@@ -83,7 +83,7 @@ public:
     /// camera, in place of the method's picture; the same `whole` each time. `hidden`, where it is
     /// given, is this camera's: what it hides is not drawn. Throws EnvironmentError where the
     /// driver refuses.
-    void draw_reference_picture(const std::shared_ptr<const terrain::HeightField>& whole,
+    void draw_reference_picture(const std::shared_ptr<const terrain::WholeTerrain>& whole,
                                 const measure::HiddenGround* hidden = nullptr);
     /// The triangles that the frozen selection sends to the rasteriser.
     [[nodiscard]] measure::CapturedSurface capture();

@@ -92,7 +92,10 @@ std::uint64_t hash_of(std::string_view text) {
 std::string encoded(std::uint64_t key, const measure::ReferenceView& view) {
     const std::vector<std::uint64_t> seen = packed(view.seen);
     const Header header{key, view.seen.size(), seen.size(), view.hits.size(), view.picture.size()};
-    std::string text(reinterpret_cast<const char*>(&header), sizeof header);
+    std::string text;
+    text.reserve(sizeof header + bytes_of(seen).size() + bytes_of(view.hits).size() +
+                 view.picture.size() + sizeof(std::uint64_t));
+    text.append(reinterpret_cast<const char*>(&header), sizeof header);
     text += bytes_of(seen);
     text += bytes_of(view.hits);
     text += bytes_of(view.picture);
@@ -164,7 +167,7 @@ fs::path ViewCache::file_of(int frame) const {
 }
 
 std::optional<measure::ReferenceView> ViewCache::find(int frame, const Camera& camera) const {
-    if (folder_.empty()) return std::nullopt;
+    if (!keeps()) return std::nullopt;
     const fs::path file = file_of(frame);
     std::error_code ignored;
     if (fs::symlink_status(file, ignored).type() != fs::file_type::regular ||
@@ -178,15 +181,18 @@ std::optional<measure::ReferenceView> ViewCache::find(int frame, const Camera& c
     }
 }
 
-void ViewCache::keep(int frame, const Camera& camera, const measure::ReferenceView& view) const {
+void ViewCache::keep(int frame, const Camera& camera, const measure::ReferenceView& view) {
     std::error_code ignored;
     if (fs::symlink_status(folder_, ignored).type() != fs::file_type::directory) return;
     const std::string text = encoded(key_of(camera), view);
     const fs::space_info disk = fs::space(folder_, ignored);
     if (ignored || disk.available < text.size() + kLeftBytes) return;
-    if (size_of_files(folder_) + text.size() > kMostBytes) return;
+    // Cells fly one after the other: nobody else writes there meanwhile.
+    if (!bytes_) bytes_ = size_of_files(folder_);
+    if (*bytes_ + text.size() > kMostBytes) return;
     try {
         base::write_whole(file_of(frame), text, base::Keep::for_now);
+        *bytes_ += text.size();
     } catch (const EnvironmentError&) {  // a convenience: the disk is the results'
     }
 }

@@ -23,11 +23,13 @@ public:
     ViewCache(std::filesystem::path folder, std::string scenario, const std::string& terrain,
               const std::string& device);
 
+    /// Whether what is kept is kept.
+    [[nodiscard]] bool keeps() const { return !folder_.empty(); }
     /// What is kept of the scenario's frame; nothing where the file is damaged or of another
     /// camera.
     [[nodiscard]] std::optional<measure::ReferenceView> find(int frame, const Camera& camera) const;
     /// Does nothing where there is no room: none of what the results may need is taken.
-    void keep(int frame, const Camera& camera, const measure::ReferenceView& view) const;
+    void keep(int frame, const Camera& camera, const measure::ReferenceView& view);
 
 private:
     [[nodiscard]] std::filesystem::path file_of(int frame) const;
@@ -35,7 +37,8 @@ private:
 
     std::filesystem::path folder_;
     std::string scenario_;
-    std::uint64_t base_ = 0;  ///< hash of what all keys depend on
+    std::uint64_t base_ = 0;              ///< hash of what all keys depend on
+    std::optional<std::uint64_t> bytes_;  ///< of the folder's files, once they were counted
 };
 
 }  // namespace lodbench::run

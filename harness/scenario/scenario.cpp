@@ -394,11 +394,11 @@ Scenario parse_scenario(std::string_view text, const std::filesystem::path& file
     }
     for (const auto& [path, value] : all.values()) put(path, value, table);
     Scenario scenario = read_scenario(table, text, file, kept);
-    if (scenario.terrain.out_of_core && scenario.measure.truth) {
+    if (scenario.terrain.out_of_core && scenario.measure.truth &&
+        !scenario.measure.economy.empty()) {
         throw InputError(fmt::format(
-            "{}: out_of_core is set, but measuring the truth needs the whole terrain in memory; "
-            "leave out_of_core out where it fits, or do not measure: truth = false under "
-            "[measure], or lodbench run --no-truth",
+            "{}: out_of_core is set, but economy triangulates the whole terrain in memory; leave "
+            "out_of_core out where it fits, or economy under [measure]",
             scenario.terrain.where));
     }
     return scenario;

@@ -3,25 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
 #include <tbb/parallel_for.h>
 
 #include "api/error.h"
-#include "base/hash.h"
 
 namespace lodbench::terrain {
 namespace {
-
-std::string checksum_of(const TerrainInfo& info, std::span<const float> heights) {
-    base::Fnv1a hash;
-    hash.add(std::uint32_t(info.rows));
-    hash.add(std::uint32_t(info.columns));
-    for (const float height : heights) hash.add(std::bit_cast<std::uint32_t>(height));
-    return hash.hex();
-}
 
 bool positive(double value) {
     return std::isfinite(value) && value > 0;
@@ -72,7 +62,7 @@ HeightField::HeightField(TerrainInfo info, std::vector<float> heights)
     const auto [lowest, highest] = std::minmax_element(heights_.begin(), heights_.end());
     info_.min_height = *lowest;
     info_.max_height = *highest;
-    info_.checksum = checksum_of(info_, heights_);
+    info_.checksum = checksum_of(*this);
 }
 
 void HeightField::copy_samples(const SampleRect& rect, std::span<float> heights) const {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "api/terrain.h"
 #include "terrain/tile_summaries.h"
+#include "terrain/whole_terrain.h"
 
 namespace lodbench::terrain {
 
@@ -23,16 +23,15 @@ void check_grid(const TerrainInfo& info);
                                 float height);
 
 /// A height field held in memory, row by row, row 0 the north edge. Negative zeros become
-/// positive ones, so that equal heights have equal bits. The checksum is FNV-1a (64 bits)
-/// over little-endian words of 32 bits: rows, columns, then the bits of every height, row by row.
-class HeightField final : public Terrain {
+/// positive ones, so that equal heights have equal bits.
+class HeightField final : public WholeTerrain {
 public:
     /// `info` needs name, rows, columns, spacing, origin, void_count; the height range and the
     /// checksum are computed. Throws InputError for a grid under 2 x 2, a spacing that is not
     /// positive and finite, or a height that is not finite (naming row, column and value);
     /// ContractError where the number of heights is not rows * columns.
     HeightField(TerrainInfo info, std::vector<float> heights);
-    [[nodiscard]] std::span<const float> samples() const { return heights_; }
+    [[nodiscard]] std::span<const float> samples() const override { return heights_; }
 
 private:
     void copy_samples(const SampleRect& rect, std::span<float> heights) const override;

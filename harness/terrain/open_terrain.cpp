@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -98,8 +97,9 @@ OpenTerrain open_terrain_with_provenance(const TerrainSource& source) {
 }
 
 void require_room_for_whole(const TerrainInfo& info) {
-    check_field_size(fmt::format("terrain '{}' as a whole", info.name), info.rows, info.columns,
-                     "fly a smaller one, or without what needs the whole (--no-truth)");
+    check_field_size(
+        fmt::format("terrain '{}' as a whole", info.name), info.rows, info.columns,
+        "leave it on disk (out_of_core = true), or fly without what needs the whole (--no-truth)");
 }
 
 std::shared_ptr<const HeightField> whole_field(const std::shared_ptr<const Terrain>& terrain) {
@@ -110,31 +110,16 @@ std::shared_ptr<const HeightField> whole_field(const std::shared_ptr<const Terra
 std::unique_ptr<HeightField> whole_field(const Terrain& terrain) {
     const TerrainInfo& info = terrain.info();
     require_room_for_whole(info);
-    const TilePyramid pyramid = terrain.tiles();
-    std::vector<float> heights(std::size_t(info.rows) * std::size_t(info.columns));
-    tbb::parallel_for(0, pyramid.rows(0), [&](int tile_row) {
-        std::vector<float> tile(kTileSampleCount);
-        const int rows = std::min(kTileSamples, info.rows - tile_row * kTileCells);
-        for (int tile_column = 0; tile_column < pyramid.columns(0); ++tile_column) {
-            terrain.read_tile({0, tile_row, tile_column}, tile);
-            const int columns = std::min(kTileSamples, info.columns - tile_column * kTileCells);
-            // The line shared with the next row of tiles is that one's to write.
-            const int own = tile_row + 1 < pyramid.rows(0) ? kTileCells : rows;
-            for (int row = 0; row < own; ++row) {
-                std::copy_n(tile.begin() + std::ptrdiff_t(row) * kTileSamples, columns,
-                            heights.begin() +
-                                (std::ptrdiff_t(tile_row) * kTileCells + row) * info.columns +
-                                std::ptrdiff_t(tile_column) * kTileCells);
-            }
-        }
+    const std::size_t columns = std::size_t(info.columns);
+    std::vector<float> heights(std::size_t(info.rows) * columns);
+    tbb::parallel_for(0, terrain.tiles().rows(0), [&](int tile_row) {
+        read_row_of_tiles(
+            terrain, tile_row,
+            std::span(heights).subspan(std::size_t(tile_row) * kTileCells * columns,
+                                       std::size_t(rows_of_tiles(info, tile_row)) * columns));
     });
     auto field = std::make_unique<HeightField>(info, std::move(heights));
-    if (field->info().checksum != info.checksum) {
-        throw TerrainError(fmt::format(
-            "terrain '{}': its tiles make a grid of checksum {}, expected {}; the file is damaged, "
-            "build it anew",
-            info.name, field->info().checksum, info.checksum));
-    }
+    require_checksum(field->info(), info.checksum);
     return field;
 }
 

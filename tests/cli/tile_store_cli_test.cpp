@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "sanitizers/sanitizers.h"
+#include "support/compare_truth.h"
 #include "support/run_lodbench.h"
 #include "support/tile_store_files.h"
 
@@ -351,12 +352,6 @@ TEST_F(StoreCommand, flown_out_of_core_skips_the_methods_that_hold_it_whole) {
         arguments.insert(arguments.end(), options.begin(), options.end());
         return run_lodbench(arguments, folder_.path());
     };
-    const Finished measured = fly("out_of_core = true\n", {});
-    EXPECT_EQ(measured.status, 2);
-    EXPECT_THAT(measured.output, HasSubstr("s.toml:2: out_of_core is set, but measuring the truth "
-                                           "needs the whole terrain in memory; leave out_of_core "
-                                           "out where it fits, or do not measure: truth = false "
-                                           "under [measure], or lodbench run --no-truth"));
     const Finished flown = fly("out_of_core = true\n", {"--no-truth"});
     EXPECT_EQ(flown.status, 0) << flown.output;
     std::map<std::string, Json::Value> cells;
@@ -369,6 +364,39 @@ TEST_F(StoreCommand, flown_out_of_core_skips_the_methods_that_hold_it_whole) {
     EXPECT_EQ(cells["template"]["reason"].asString(),
               "method 'template' holds the whole terrain in memory, and the scenario is out of "
               "core");
+}
+
+TEST_F(StoreCommand, flown_out_of_core_measures_what_is_measured_in_memory) {
+    synth("a.tiles");
+    const auto fly = [&](const char* more, const char* out) {
+        const fs::path folder = folder_.path() / out;
+        const Finished flown =
+            run_lodbench({"run", scenario("a.tiles", more).string(), "--out", folder.string(),
+                          "--method", "dltq", "--set", "dltq.tau=16"},
+                         folder_.path());
+        EXPECT_EQ(flown.status, 0) << flown.output;
+        return folder;
+    };
+    const fs::path in_memory = fly("", "in_memory");
+    const fs::path on_disk = fly("out_of_core = true\n", "on_disk");
+    EXPECT_GT(cells_of(on_disk)[0]["screen_error_px"]["max"].asDouble(), 0);
+    EXPECT_EQ(std::distance(fs::directory_iterator(on_disk), {}),
+              std::distance(fs::directory_iterator(in_memory), {}));
+    expect_equal_truth(in_memory, on_disk);
+}
+
+TEST_F(StoreCommand, economy_of_a_flight_out_of_core_is_refused) {
+    synth("a.tiles");
+    const Finished refused =
+        run_lodbench({"economy", scenario("a.tiles", "out_of_core = true\n").string(), "--frame",
+                      "1", "--out", (folder_.path() / "out").string()},
+                     folder_.path());
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(
+        refused.output,
+        HasSubstr("s.toml:2: out_of_core is set, but economy triangulates the whole terrain "
+                  "in memory; leave out_of_core out where it fits, or economy under "
+                  "[measure]"));
 }
 
 TEST_F(StoreCommand, of_any_size_is_built_and_checked_within_bounded_memory) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/compare_truth.h"
 #include "support/run_lodbench.h"
 
 namespace lodbench::test {
@@ -33,13 +34,6 @@ repetitions = 1
     return file;
 }
 
-int compare(const fs::path& before, const fs::path& after) {
-    const std::string command =
-        "/usr/bin/python3 " LODBENCH_SOURCE_DIR "/tests/support/compare_truth.py " +
-        before.string() + " " + after.string() + " > " + (after / "compared.txt").string();
-    return std::system(command.c_str());
-}
-
 TEST(Views, kept_for_the_next_method_change_no_figure_and_are_gone_at_the_end) {
     const ScratchFolder folder;
     const fs::path scenario = hills(folder.path());
@@ -69,9 +63,34 @@ TEST(Views, kept_for_the_next_method_change_no_figure_and_are_gone_at_the_end) {
         const fs::path alone = folder.path() / step;
         const Finished one = flown(step, alone);
         ASSERT_EQ(one.status, 0) << one.output;
-        EXPECT_EQ(compare(together, alone), 0) << text_of(alone / "compared.txt");
-        EXPECT_NE(text_of(alone / "compared.txt").find(" 0 not"), std::string::npos);
+        expect_equal_truth(together, alone);
     }
+}
+
+// Each probe is a campaign of its own: the views must come from the search.
+TEST(Views, of_a_search_are_found_once_for_all_its_probes) {
+    const ScratchFolder folder;
+    const fs::path out = folder.path() / "out";
+    const pid_t child =
+        start_lodbench({"match", hills(folder.path()).string(), "--error", "4px", "--method",
+                        "template", "--probes", "3", "--out", out.string()},
+                       folder.path() / "log");
+    bool kept = false;
+    int of_a_probe = 0;
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        kept = kept ||
+               (fs::exists(out / "views" / "hills__4.view") && !fs::exists(out / "cells.jsonl"));
+        std::error_code ignored;
+        for (const auto& probe : fs::directory_iterator(out / "search", ignored)) {
+            of_a_probe += fs::exists(probe.path() / "views" / "hills__4.view", ignored) ? 1 : 0;
+        }
+        usleep(2000);
+    }
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(folder.path() / "log");
+    EXPECT_TRUE(kept) << "before the flight at the value that was found";
+    EXPECT_EQ(of_a_probe, 0);
+    EXPECT_FALSE(fs::exists(out / "views"));
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST(ErrorPool, an_empty_pool_says_nothing) {
     EXPECT_FALSE(pool.percentile(0.5).has_value());
 }
 
-TEST(ErrorPool, pools_add_up_and_can_be_cleared) {
+TEST(ErrorPool, a_pool_takes_anothers_errors_over_and_leaves_it_empty) {
     const std::vector<double> first = random_errors(500, 1);
     const std::vector<double> second = random_errors(700, 2);
     ErrorPool a;
@@ -108,10 +108,9 @@ TEST(ErrorPool, pools_add_up_and_can_be_cleared) {
     put(b, second);
     put(both, first);
     put(both, second);
-    a.add(b);
+    a.take(b);
     for (const double p : {0.1, 0.5, 0.99, 0.999}) EXPECT_EQ(a.percentile(p), both.percentile(p));
     EXPECT_EQ(a.sums().count, 1200U);
-    b.clear();
     EXPECT_EQ(b.summary(false).count, 0U);
     put(b, first);
     ErrorPool fresh;

@@ -77,6 +77,32 @@ TEST(HiddenGround, hides_no_sample_that_is_seen) {
     EXPECT_GT(found.hidden, 20000);
 }
 
+TEST(HiddenGround, squares_hold_what_samples_hold) {
+    for (const auto& [rows, columns] : {std::pair{150, 200}, {64, 65}, {130, 63}}) {
+        const Ground ground = random_ground(rows, columns, 3, 30);
+        Camera camera;
+        camera.position = ground.point(columns * 0.4, rows * 0.55, 40);
+        const HiddenGround hidden(ground.terrain(), camera);
+        int count = 0;
+        for (int row = 0; row < rows; ++row) {
+            for (int column = 0; column < columns; ++column) {
+                const HiddenGround::Square square = hidden.square(row / 64, column / 64);
+                const bool held =
+                    (square[std::size_t(row % 64)] >> unsigned(column % 64) & 1U) != 0;
+                ASSERT_EQ(held, hidden.sample(row, column)) << row << ", " << column;
+                count += held ? 1 : 0;
+            }
+        }
+        EXPECT_GT(count, rows);
+        const HiddenGround::Square last = hidden.square((rows - 1) / 64, (columns - 1) / 64);
+        for (int row = 0; row < 64; ++row) {
+            const std::uint64_t beyond =
+                columns % 64 == 0 ? 0 : ~std::uint64_t{0} << unsigned(columns % 64);
+            EXPECT_EQ(last[std::size_t(row)] & beyond, 0U);
+        }
+    }
+}
+
 TEST(HiddenGround, hides_nearly_all_that_is_not_seen_of_hills) {
     const Ground hills = make_ground(
         257, 257,

@@ -28,7 +28,7 @@ protected:
     const std::shared_ptr<const terrain::HeightField> terrain_ = hills(65, 65);
     const Camera camera_ = camera_at({512100, -3300, 260}, 40, -10);
     const TemporaryFolder folder_;
-    const run::ViewCache cache_{folder_.path(), "hills", "checksum", "driver"};
+    run::ViewCache cache_{folder_.path(), "hills", "checksum", "driver"};
 };
 
 TEST_F(KeptViews, give_the_figures_that_are_found_without_them) {

@@ -95,7 +95,7 @@ TEST_F(ViewCacheTest, damage_is_seen_and_replaced) {
 
 TEST_F(ViewCacheTest, what_cannot_be_kept_is_not) {
     // No folder.
-    const ViewCache nowhere(folder_ / "absent", "demo", "0", "");
+    ViewCache nowhere(folder_ / "absent", "demo", "0", "");
     nowhere.keep(5, camera_, view_);
     EXPECT_FALSE(nowhere.find(5, camera_));
     EXPECT_FALSE(fs::exists(folder_ / "absent"));

@@ -1,18 +1,23 @@
 #pragma once
 // Terrains and their stores, and bytes of a store changed on purpose.
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/hash.h"
 #include "raster_files.h"
+#include "support/pyramid_tiles.h"
 #include "terrain/tile_store.h"
 #include "terrain/tile_store_writer.h"
 
@@ -37,6 +42,50 @@ inline terrain::HeightField rough_field(int rows, int columns, std::uint64_t see
     for (float& height : heights) height = float(double(random.next() >> 40U) * 1e-4 - 300);
     heights[1] = -0.0F;
     return {info, std::move(heights)};
+}
+
+inline bool same_bits(std::span<const float> one, std::span<const float> other) {
+    return std::ranges::equal(one, other, [](float a, float b) {
+        return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+    });
+}
+
+/// All that a terrain tells and serves.
+inline void expect_equal(const Terrain& store, const terrain::HeightField& field) {
+    EXPECT_EQ(store.info().name, field.info().name);
+    EXPECT_EQ(store.info().rows, field.info().rows);
+    EXPECT_EQ(store.info().columns, field.info().columns);
+    EXPECT_EQ(store.info().spacing, field.info().spacing);
+    EXPECT_EQ(store.info().origin, field.info().origin);
+    EXPECT_EQ(store.info().min_height, field.info().min_height);
+    EXPECT_EQ(store.info().max_height, field.info().max_height);
+    EXPECT_EQ(store.info().void_count, field.info().void_count);
+    EXPECT_EQ(store.info().checksum, field.info().checksum);
+    std::vector<float> one(kTileSampleCount), other(kTileSampleCount);
+    for (const TileId& tile : all_tiles(field.tiles())) {
+        SCOPED_TRACE(terrain::name_of(tile));
+        store.read_tile(tile, one);
+        field.read_tile(tile, other);
+        EXPECT_TRUE(same_bits(one, other));
+        const TileSummary a = store.tile_summary(tile), b = field.tile_summary(tile);
+        EXPECT_EQ(a.min_height, b.min_height);
+        EXPECT_EQ(a.max_height, b.max_height);
+        EXPECT_EQ(a.midpoint_error, b.midpoint_error);
+    }
+    base::SplitMix64 random(9);
+    for (int i = 0; i < 60; ++i) {
+        SampleRect rect;
+        rect.row = int(random.below(std::uint64_t(field.info().rows)));
+        rect.column = int(random.below(std::uint64_t(field.info().columns)));
+        rect.rows = int(random.below(std::uint64_t(field.info().rows - rect.row + 1)));
+        rect.columns = int(random.below(std::uint64_t(field.info().columns - rect.column + 1)));
+        if (i == 0) rect = {0, 0, field.info().rows, field.info().columns};
+        std::vector<float> a(std::size_t(rect.rows) * std::size_t(rect.columns)), b(a.size());
+        store.read(rect, a);
+        field.read(rect, b);
+        EXPECT_TRUE(same_bits(a, b))
+            << rect.row << ' ' << rect.column << ' ' << rect.rows << ' ' << rect.columns;
+    }
 }
 
 inline std::string bytes_of(const std::filesystem::path& file) {

@@ -31,49 +31,6 @@ using testing::HasSubstr;
 constexpr std::pair<int, int> kSizes[] = {{2, 2},    {2, 300},  {65, 65},   {66, 65},  {64, 129},
                                           {100, 70}, {129, 66}, {257, 257}, {200, 65}, {131, 391}};
 
-bool same_bits(std::span<const float> one, std::span<const float> other) {
-    return std::ranges::equal(one, other, [](float a, float b) {
-        return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
-    });
-}
-
-void expect_equal(const Terrain& store, const HeightField& field) {
-    EXPECT_EQ(store.info().name, field.info().name);
-    EXPECT_EQ(store.info().rows, field.info().rows);
-    EXPECT_EQ(store.info().columns, field.info().columns);
-    EXPECT_EQ(store.info().spacing, field.info().spacing);
-    EXPECT_EQ(store.info().origin, field.info().origin);
-    EXPECT_EQ(store.info().min_height, field.info().min_height);
-    EXPECT_EQ(store.info().max_height, field.info().max_height);
-    EXPECT_EQ(store.info().void_count, field.info().void_count);
-    EXPECT_EQ(store.info().checksum, field.info().checksum);
-    std::vector<float> one(kTileSampleCount), other(kTileSampleCount);
-    for (const TileId& tile : all_tiles(field.tiles())) {
-        SCOPED_TRACE(terrain::name_of(tile));
-        store.read_tile(tile, one);
-        field.read_tile(tile, other);
-        EXPECT_TRUE(same_bits(one, other));
-        const TileSummary a = store.tile_summary(tile), b = field.tile_summary(tile);
-        EXPECT_EQ(a.min_height, b.min_height);
-        EXPECT_EQ(a.max_height, b.max_height);
-        EXPECT_EQ(a.midpoint_error, b.midpoint_error);
-    }
-    base::SplitMix64 random(9);
-    for (int i = 0; i < 60; ++i) {
-        SampleRect rect;
-        rect.row = int(random.below(std::uint64_t(field.info().rows)));
-        rect.column = int(random.below(std::uint64_t(field.info().columns)));
-        rect.rows = int(random.below(std::uint64_t(field.info().rows - rect.row + 1)));
-        rect.columns = int(random.below(std::uint64_t(field.info().columns - rect.column + 1)));
-        if (i == 0) rect = {0, 0, field.info().rows, field.info().columns};
-        std::vector<float> a(std::size_t(rect.rows) * std::size_t(rect.columns)), b(a.size());
-        store.read(rect, a);
-        field.read(rect, b);
-        EXPECT_TRUE(same_bits(a, b))
-            << rect.row << ' ' << rect.column << ' ' << rect.rows << ' ' << rect.columns;
-    }
-}
-
 class TileStore : public testing::Test {
 protected:
     [[nodiscard]] std::filesystem::path file(const std::string& name = "a.tiles") const {
@@ -362,8 +319,8 @@ TEST_F(TileStore, whole_is_refused_where_the_memory_does_not_hold_it) {
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
                      "terrain 'vast' as a whole: 65537 rows x 65537 columns are more than the "
-                     "2147483648 samples that are held in memory; fly a smaller one, or without "
-                     "what needs the whole (--no-truth)");
+                     "2147483648 samples that are held in memory; leave it on disk (out_of_core = "
+                     "true), or fly without what needs the whole (--no-truth)");
     }
 }
 

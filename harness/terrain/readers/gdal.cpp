@@ -42,6 +42,9 @@ void register_drivers() {
     GDALSetCacheMax64(GIntBig(256) << 20);
     // Of GeoTIFF 1.0 too, what the heights are: by default only 1.1 tells.
     CPLSetConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
+    // GDAL hears what libtiff says, also to another library (OpenImageIO) while no GdalWords
+    // listens, and would print it. Who asked libtiff is told by its result.
+    CPLSetErrorHandler(CPLQuietErrorHandler);
 }
 
 constexpr std::array<const char*, 8> kDrivers = {"GTiff", "AAIGrid", "SRTMHGT", "USGSDEM",
