@@ -1,12 +1,14 @@
 // pgm: a grid over the screen, mapped by the vertex shader onto the terrain; no tree, no error
 // metric. Yotam Livny, Neta Sokolovsky, Tal Grinshpoun, Jihad El-Sana: Persistent Grid Mapping: A
-// GPU-based Framework for Interactive Terrain Rendering (2006). In core. Deviations: see README.md.
+// GPU-based Framework for Interactive Terrain Rendering (2006). Deviations: see README.md.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "api/method.h"
 #include "gl/device.h"
@@ -28,10 +30,10 @@ using glm::vec4;
 }  // namespace block
 using block::MappingBlock;
 constexpr GLuint kMappingBinding = gl::kFirstFreeBinding;  // PGM_MAPPING_BINDING of pgm.vert
-constexpr std::size_t kLevelsOffset = 80;
+constexpr std::size_t kAtlasOffset = 80;
 constexpr std::size_t kMaximumLevels = 24;
-static_assert(offsetof(MappingBlock, levels) == kLevelsOffset &&
-              sizeof(MappingBlock) == kLevelsOffset + 16 * kMaximumLevels);
+static_assert(offsetof(MappingBlock, atlas) == kAtlasOffset &&
+              sizeof(MappingBlock) == kAtlasOffset + 2 * 16 * kMaximumLevels);
 
 /// Two triangles a cell, in bands of eight columns from the horizon downward, so that a vertex is
 /// reused while it is still in the vertex cache. Neighbours share vertices by index, hence to the
@@ -66,23 +68,40 @@ GridSize grid_size(const Params& params) {
     return {int(columns), rows};
 }
 
+/// PGM_LEVEL of pgm.vert.
+std::string level_rule(const Params& params) {
+    if (params.boolean("finest_only")) return "PGM_FINEST_ONLY";
+    if (params.choice("level") == "distance") return "PGM_BY_DISTANCE";
+    return params.choice("spacing") == "formula" ? "PGM_BY_FORMULA" : "PGM_BY_NEIGHBOUR";
+}
+
+/// PGM_INTERPOLATION of pgm.vert.
+std::string interpolation_rule(const Params& params) {
+    const std::string& name = params.choice("interpolation");
+    if (name == "nearest") return "PGM_NEAREST";
+    return name == "bilinear" ? "PGM_BILINEAR" : "PGM_PARENT";
+}
+
 class PersistentGrid final : public Method {
 public:
     explicit PersistentGrid(const Params& params)
         : grid_(grid_size(params)),
-          margin_(params.real("margin")),
+          coverage_{params.real("margin"), params.boolean("extend")},
           base_near_ground_(params.choice("base") == "minimum-near"),
-          parent_(params.boolean("parent")) {}
+          window_texels_(int(params.integer("window"))),
+          defines_{{"PGM_LEVEL", level_rule(params)},
+                   {"PGM_INTERPOLATION", interpolation_rule(params)}} {}
 
     void prepare(const Terrain& terrain, gl::Device& device) override {
         info_ = terrain.info();
+        const AtlasLayout layout = whole_layout(info_);
         const int limit = device.info().max_texture_size;
-        if (info_.columns > limit || info_.rows > limit) {
+        if (layout.size.x > limit || layout.size.y > limit) {
             throw EnvironmentError(
-                fmt::format("pgm holds the whole terrain in one texture: {} x {} samples are more "
-                            "than the {} x {} "
-                            "that this driver allows; use a smaller terrain",
-                            info_.columns, info_.rows, limit, limit));
+                fmt::format("pgm holds the terrain's pyramid in one texture: {} x {} samples make "
+                            "one of {} x {}, more than the {} x {} that this driver allows; use a "
+                            "smaller terrain",
+                            info_.columns, info_.rows, layout.size.x, layout.size.y, limit, limit));
         }
         Level finest{info_.columns, info_.rows, {}};
         finest.heights.resize(std::size_t(info_.columns) * std::size_t(info_.rows));
@@ -95,21 +114,11 @@ public:
         device_ = &device;
         program_ = gl::Program(
             device, "pgm", embedded_shaders(),
-            {{GL_VERTEX_SHADER, "pgm.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
-        const AtlasLayout layout = atlas_layout(levels_);
-        finest_ = make_texture(device, "pgm: finest heights", {info_.columns, info_.rows});
-        coarse_ = make_texture(device, "pgm: coarse heights", layout.size);
+            {{GL_VERTEX_SHADER, "pgm.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
+            defines_);
         block_ = {};
         block_.grid = {grid_.columns, grid_.rows, int(levels_.size()), 0};
-        for (std::size_t i = 0; i < levels_.size(); ++i) {
-            const Level& level = levels_[i];
-            const glm::ivec2 origin = layout.origins[i];
-            (i == 0 ? finest_ : coarse_)
-                .write(0, origin.x, origin.y, level.columns, level.rows, GL_RED, GL_FLOAT,
-                       level.heights.data());
-            block_.levels[i] = {origin.x, origin.y, level.columns, level.rows};
-        }
-        levels_ = {};  // the textures hold them from here on
+        upload_pyramid(device);
         mapping_buffer_ =
             gl::Buffer(device, "pgm: mapping", sizeof block_, GL_DYNAMIC_STORAGE_BIT, &block_);
         const auto indices = grid_indices(grid_);
@@ -126,19 +135,19 @@ public:
                 (glm::dvec2(camera.position) - info_.origin) / info_.spacing;
             base_height_ = local_minimum_.at({east_north.x, info_.rows - 1 - east_north.y});
         }
-        mapping_ = make_mapping(camera, info_, base_height_, margin_, grid_);
+        mapping_ = make_mapping(camera, info_, base_height_, coverage_, grid_);
         block_.ray_first = glm::dvec4(mapping_.first, mapping_.eye_height);
         block_.ray_across = glm::dvec4(mapping_.across, mapping_.far_distance);
         block_.ray_down = glm::dvec4(mapping_.down, std::sin(mapping_.ray_angle));
-        block_.sampling = glm::dvec4(std::cos(mapping_.ray_angle),
-                                     1 / std::max(info_.spacing.x, info_.spacing.y), parent_, 0);
-        mapping_buffer_.write(0, kLevelsOffset, &block_);  // the levels behind it never change
+        block_.sampling =
+            glm::dvec4(std::cos(mapping_.ray_angle), 1 / std::max(info_.spacing.x, info_.spacing.y),
+                       2 / (window_texels_ * std::min(info_.spacing.x, info_.spacing.y)), 0);
+        mapping_buffer_.write(0, kAtlasOffset, &block_);  // the levels behind it never change
     }
 
     void draw(const View&) override {
         mapping_buffer_.bind_uniform(kMappingBinding);
-        finest_.bind(0);
-        coarse_.bind(1);
+        heights_.bind(0);
         device_->draw_elements(program_, vertices_, GL_TRIANGLES, index_count_, GL_UNSIGNED_INT);
     }
 
@@ -153,29 +162,37 @@ public:
         vertices_ = {};
         indices_ = {};
         mapping_buffer_ = {};
-        coarse_ = {};
-        finest_ = {};
+        heights_ = {};
         program_ = {};
     }
 
 private:
-    static gl::Texture make_texture(gl::Device& device, const char* label, glm::ivec2 size) {
-        gl::Texture texture(device, label, GL_TEXTURE_2D, GL_R32F, size.x, size.y);
-        texture.set_parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        texture.set_parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        return texture;
+    void upload_pyramid(gl::Device& device) {
+        const AtlasLayout layout = whole_layout(info_);
+        heights_ = gl::Texture(device, "pgm: heights", GL_TEXTURE_2D, GL_R32F, layout.size.x,
+                               layout.size.y);
+        for (std::size_t i = 0; i < levels_.size(); ++i) {
+            const Level& level = levels_[i];
+            const glm::ivec2 origin = layout.origins[i];
+            heights_.write(0, origin.x, origin.y, level.columns, level.rows, GL_RED, GL_FLOAT,
+                           level.heights.data());
+            block_.atlas[i] = {origin.x, origin.y, -1, -1};
+            block_.windows[i] = {0, 0, level.columns - 1, level.rows - 1};
+        }
+        levels_ = {};  // the texture holds them from here on
     }
 
     GridSize grid_;
-    double margin_;
+    Coverage coverage_;
     bool base_near_ground_;
-    bool parent_;
+    int window_texels_;
+    std::map<std::string, std::string> defines_;  ///< of the program
     TerrainInfo info_;
     std::vector<Level> levels_;  ///< between prepare and upload
     LocalMinimum local_minimum_;
     gl::Device* device_ = nullptr;
     gl::Program program_;
-    gl::Texture finest_, coarse_;
+    gl::Texture heights_;
     gl::Buffer mapping_buffer_, indices_;
     gl::VertexArray vertices_;
     GLsizei index_count_ = 0;
@@ -185,13 +202,24 @@ private:
 };
 
 constexpr ParamSpec kParams[] = {
-    integer_param("grid", 240, 2, 2048,
+    integer_param("grid", 600, 2, 4096,
                   "rows of the grid: vertices from top to bottom of the picture"),
-    real_param("aspect", 4.0 / 3.0, 0.05, 20, "columns of the grid per row (150x600: 0.25)"),
+    real_param("aspect", 0.25, 0.05, 20, "columns of the grid per row (150 x 600: 0.25)"),
     real_param("margin", 0.05, 0, 1, "part by which the grid extends beyond the picture"),
+    boolean_param("extend", true, "extends the vertical field of view to 90 degrees at least"),
     choice_param("base", "zero", "zero|minimum-near",
                  "base plane: z = 0 as in the paper, or the lowest ground near the viewpoint"),
-    boolean_param("parent", true, "blend in the coarser level's height, equation (4)")};
+    choice_param("level", "spacing", "spacing|distance",
+                 "what chooses the level of detail: the distance r between vertices, or that to "
+                 "the viewpoint, equation (4)"),
+    choice_param("spacing", "neighbour", "neighbour|formula",
+                 "r: the distance to the farthest adjacent vertex, or equation (3)"),
+    choice_param("interpolation", "parent", "nearest|bilinear|parent",
+                 "one texel; four; or four and, blended in, four of the coarser level"),
+    boolean_param("finest_only", false, "samples the finest level alone, without the pyramid"),
+    integer_param("window", 512, 64, 2048,
+                  "texels along an edge of a clip window, a power of two; level = distance "
+                  "measures by half the finest")};
 
 constexpr MethodDescriptor kMethods[] = {
     {.id = "pgm",
@@ -199,7 +227,7 @@ constexpr MethodDescriptor kMethods[] = {
      .citation =
          "Yotam Livny, Neta Sokolovsky, Tal Grinshpoun, Jihad El-Sana (2006): Persistent Grid "
          "Mapping: A GPU-based Framework for Interactive Terrain Rendering",
-     .version = "1",
+     .version = "2",
      .capabilities = 0,
      .gl_extensions = nullptr,
      .params = kParams,

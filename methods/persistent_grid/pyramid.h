@@ -54,25 +54,39 @@ inline std::vector<Level> make_pyramid(Level finest) {
     return levels;
 }
 
-/// Where each level from 1 up lies in the texture that holds them together: level 1 in the
-/// north-west corner, all others below each other at its east side. (Mipmaps of OpenGL round sizes
-/// down.)
+/// Columns (x) and rows (y) of a level of the pyramid over this grid.
+inline glm::ivec2 level_size(const TerrainInfo& info, int level) {
+    return (glm::ivec2(info.columns, info.rows) - 1) / (1 << level) + 1;
+}
+
+/// Levels down to one texel.
+inline int level_count(const TerrainInfo& info) {
+    int levels = 1;
+    while (level_size(info, levels - 1) != glm::ivec2(1)) ++levels;
+    return levels;
+}
+
+/// Where each level lies in the texture that holds them together.
 struct AtlasLayout {
-    std::vector<glm::ivec2>
-        origins;  ///< one a level; of level 0, which has its own texture, (0, 0)
+    std::vector<glm::ivec2> origins;  ///< one a level
     glm::ivec2 size{1};
 };
-inline AtlasLayout atlas_layout(const std::vector<Level>& levels) {
+
+/// Of all levels whole: level 0 in the north-west corner, level 1 below it, all others below each
+/// other at the east side of level 1. (Mipmaps of OpenGL round sizes down.)
+inline AtlasLayout whole_layout(const TerrainInfo& info) {
     AtlasLayout layout;
-    layout.origins.assign(levels.size(), glm::ivec2(0));
-    int south = 0;
-    for (std::size_t i = 1; i < levels.size(); ++i) {
-        const glm::ivec2 level_size(levels[i].columns, levels[i].rows);
-        if (i > 1) {
-            layout.origins[i] = {levels[1].columns, south};
-            south += level_size.y;
+    int south = info.rows;
+    for (int level = 0; level < level_count(info); ++level) {
+        const glm::ivec2 size = level_size(info, level);
+        glm::ivec2 origin(0);
+        if (level == 1) origin = {0, info.rows};
+        if (level > 1) {
+            origin = {level_size(info, 1).x, south};
+            south += size.y;
         }
-        layout.size = glm::max(layout.size, layout.origins[i] + level_size);
+        layout.origins.push_back(origin);
+        layout.size = glm::max(layout.size, origin + size);
     }
     return layout;
 }

@@ -63,22 +63,42 @@ TEST(PgmPyramid, texels_stand_half_a_texel_off_the_samples) {
     }
 }
 
-TEST(PgmPyramid, atlas_keeps_levels_apart) {
+TerrainInfo info_of(int rows, int columns) {
+    TerrainInfo info;
+    info.rows = rows;
+    info.columns = columns;
+    return info;
+}
+
+TEST(PgmPyramid, sizes_are_those_of_the_levels) {
+    for (const auto& [rows, columns] : {std::pair{2, 2}, {2, 1025}, {1026, 1023}, {37, 4}}) {
+        const auto levels = make_pyramid(make_level(rows, columns, [](int, int) { return 5; }));
+        const TerrainInfo info = info_of(rows, columns);
+        ASSERT_EQ(level_count(info), int(levels.size()));
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+            EXPECT_EQ(level_size(info, int(i)), glm::ivec2(levels[i].columns, levels[i].rows));
+        }
+    }
+}
+
+TEST(PgmPyramid, whole_levels_lie_apart) {
     for (const auto& [rows, columns] :
          {std::pair{1025, 1025}, {2, 2}, {3, 1000}, {1000, 3}, {513, 100}}) {
-        const auto levels = make_pyramid(make_level(rows, columns, [](int, int) { return 0; }));
-        const AtlasLayout layout = atlas_layout(levels);
-        std::vector<int> owner(std::size_t(layout.size.x) * std::size_t(layout.size.y), 0);
-        for (std::size_t i = 1; i < levels.size(); ++i) {
-            for (int y = 0; y < levels[i].rows; ++y) {
-                for (int x = 0; x < levels[i].columns; ++x) {
-                    const glm::ivec2 texel = layout.origins[i] + glm::ivec2(x, y);
+        const TerrainInfo info = info_of(rows, columns);
+        const AtlasLayout layout = whole_layout(info);
+        ASSERT_EQ(int(layout.origins.size()), level_count(info));
+        std::vector<int> owner(std::size_t(layout.size.x) * std::size_t(layout.size.y), -1);
+        for (int level = 0; level < level_count(info); ++level) {
+            const glm::ivec2 size = level_size(info, level);
+            for (int y = 0; y < size.y; ++y) {
+                for (int x = 0; x < size.x; ++x) {
+                    const glm::ivec2 texel = layout.origins[std::size_t(level)] + glm::ivec2(x, y);
                     ASSERT_LT(texel.x, layout.size.x);
                     ASSERT_LT(texel.y, layout.size.y);
                     int& cell = owner[std::size_t(texel.y) * std::size_t(layout.size.x) +
                                       std::size_t(texel.x)];
-                    ASSERT_EQ(cell, 0) << "levels " << cell << " and " << i;
-                    cell = int(i);
+                    ASSERT_EQ(cell, -1) << "levels " << cell << " and " << level;
+                    cell = level;
                 }
             }
         }

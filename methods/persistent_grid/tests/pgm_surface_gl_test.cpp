@@ -100,7 +100,7 @@ TEST_F(PgmSurface, is_finite_and_has_the_same_number_of_triangles_for_every_came
 TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
     for (const auto& [name, camera] : cameras(terrain_->info())) {
         const Mapping mapping =
-            persistent_grid::make_mapping(camera, terrain_->info(), 0, kMargin, kGrid);
+            persistent_grid::make_mapping(camera, terrain_->info(), 0, {kMargin}, kGrid);
         const auto vertices = grid_vertices(flight_.surface(camera));
         for (int row = 0; row < kGrid.rows; ++row) {
             for (int column = 0; column < kGrid.columns; ++column) {
@@ -135,54 +135,131 @@ double level_height(const Level& level, int l, const glm::dvec2& place) {
                     glm::mix(at(corner.x, corner.y + 1), at(corner.x + 1, corner.y + 1), t.x), t.y);
 }
 
-TEST(PgmHeights, are_those_of_equations_3_and_4) {
+/// The texel nearest to a place in samples.
+double nearest_height(const Level& level, int l, const glm::dvec2& place) {
+    const glm::dvec2 texel = glm::floor((place + 0.5) / double(1 << l));
+    return level.at(int(std::clamp(texel.y, 0.0, level.rows - 1.0)),
+                    int(std::clamp(texel.x, 0.0, level.columns - 1.0)));
+}
+
+/// A setting of level, spacing, interpolation and finest_only.
+struct Sampling {
+    const char* level;
+    const char* spacing;
+    const char* interpolation;
+    bool finest_only = false;
+};
+void PrintTo(const Sampling& sampling, std::ostream* stream) {
+    *stream << sampling.level << ", " << sampling.spacing << ", " << sampling.interpolation
+            << (sampling.finest_only ? ", finest only" : "");
+}
+
+class PgmHeights : public ::testing::TestWithParam<Sampling> {
+protected:
+    static constexpr int kWindow = 64;
+
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings() const {
+        auto settings = kSettings;
+        settings.emplace_back("level", GetParam().level);
+        settings.emplace_back("spacing", GetParam().spacing);
+        settings.emplace_back("interpolation", GetParam().interpolation);
+        settings.emplace_back("finest_only", GetParam().finest_only ? "true" : "false");
+        settings.emplace_back("window", std::to_string(kWindow));
+        return settings;
+    }
+    /// Level and weight of the parent as one number, 2.25: a quarter of level 3 in level 2. And how
+    /// far float rounding may move it.
+    struct Detail {
+        double level = 0, tolerance = 0;
+    };
+    [[nodiscard]] Detail detail(const Mapping& mapping, int column, int row, double q) const {
+        if (GetParam().finest_only) return {0, 0};
+        const double h = mapping.eye_height;
+        double ratio = 0, relative = 1e-5;
+        if (GetParam().level == std::string("distance")) {
+            ratio = 2 * q / (kWindow / 2 * 10.0);  // the shorter side of a sample; begins at a half
+        } else if (GetParam().spacing == std::string("formula")) {
+            ratio = persistent_grid::spacing_by_formula(mapping, q) / 12.5;  // the longer side
+            // Where the next ray barely meets the plane, the rounding of q is magnified.
+            relative +=
+                1e-6 * (h + q) /
+                std::max(1e-6, h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle));
+        } else {
+            const double r = persistent_grid::farthest_neighbour(mapping, kGrid, column, row);
+            ratio = r / 12.5;
+            // A difference of two places: rounding of their distances, in parts of it. The slope of
+            // a ray that was not restricted may have cancelled.
+            relative += (mapping.restricted ? 3e-6 : 1e-4) * (h + q + r) / r;
+        }
+        if (ratio <= 1) return {0, relative};
+        ratio = std::min(ratio, 1e9);
+        const double level = std::floor(std::log2(ratio));
+        return {level + ratio / std::exp2(level) - 1, 2 * relative};
+    }
+};
+
+TEST_P(PgmHeights, are_those_of_section_3_4) {
     const auto terrain = hills(201, 166);
     const TerrainInfo& info = terrain->info();
     Level finest{info.columns, info.rows, {terrain->samples().begin(), terrain->samples().end()}};
     const auto levels = persistent_grid::make_pyramid(finest);
-    for (const bool parent : {true, false}) {
-        auto settings = kSettings;
-        settings.emplace_back("parent", parent ? "true" : "false");
-        Flight flight(terrain, "persistent_grid", "pgm", settings);
-        std::map<int, int> levels_seen;
-        for (const auto& [name, camera] : cameras(info)) {
-            const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, kMargin, kGrid);
-            const auto surface = flight.surface(camera);
-            for (const glm::vec3& vertex : grid_vertices(surface)) {
+    const bool parent = GetParam().interpolation == std::string("parent");
+    const bool nearest = GetParam().interpolation == std::string("nearest");
+    Flight flight(terrain, "persistent_grid", "pgm", settings());
+    std::map<int, int> levels_seen;
+    int compared = 0, passed_over = 0;
+    for (const auto& [name, camera] : cameras(info)) {
+        const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, {kMargin}, kGrid);
+        const auto surface = flight.surface(camera);
+        const auto vertices = grid_vertices(surface);
+        for (int row = 0; row < kGrid.rows; ++row) {
+            for (int column = 0; column < kGrid.columns; ++column) {
+                const glm::vec3 vertex = vertices[std::size_t(row * kGrid.columns + column)];
                 const glm::dvec3 world = surface.origin + glm::dvec3(vertex);
-                const double q = glm::length(glm::dvec2(vertex)), h = mapping.eye_height;
+                const double q = glm::length(glm::dvec2(vertex));
                 if (q > mapping.far_distance * 0.999) continue;
-                const double denominator =
-                    h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle);
-                const double r = denominator > 0
-                                     ? (q * q + h * h) * std::sin(mapping.ray_angle) / denominator
-                                     : 1e9;
-                const double texels = r / 12.5;  // the longer side of a sample
                 const int last = int(levels.size()) - 1;
-                const int l = std::clamp(int(std::floor(std::log2(texels))), 0, last);
-                // At a change of level without the parent either of the two is right.
-                const double fraction = texels / (1 << l);
-                if (!parent && (fraction < 1.001 || fraction > 1.999)) continue;
+                const Detail wanted = detail(mapping, column, row, q);
+                const double exact = std::min(wanted.level, double(last));
+                const int l = int(exact);
                 const glm::dvec2 place((world.x - info.origin.x) / info.spacing.x,
                                        info.rows - 1 - (world.y - info.origin.y) / info.spacing.y);
-                double expected = level_height(levels[std::size_t(l)], l, place);
+                // Where a level or a texel changes without blending, either of the two is right.
+                const double edge = exact - l;
+                const glm::dvec2 within = glm::fract((place + 0.5) / std::exp2(l));
+                const glm::dvec2 to_edge = glm::min(within, 1.0 - within);
+                const bool undecided = (!parent && std::min(edge, 1 - edge) < wanted.tolerance &&
+                                        exact < last && exact > 0) ||
+                                       (nearest && std::min(to_edge.x, to_edge.y) < 1e-3);
+                passed_over += undecided ? 1 : 0;
+                if (undecided) continue;
+                const auto height = nearest ? nearest_height : level_height;
+                double expected = height(levels[std::size_t(l)], l, place);
                 if (parent && l < last) {
-                    const double weight = std::clamp(fraction - 1, 0.0, 1.0);
-                    expected = glm::mix(
-                        expected, level_height(levels[std::size_t(l + 1)], l + 1, place), weight);
+                    expected =
+                        glm::mix(expected, height(levels[std::size_t(l + 1)], l + 1, place), edge);
                 }
                 ++levels_seen[l];
-                // Float weights and heights of 160 m: 1e-5 m each; where the next ray barely meets
-                // the plane, the rounding of q in (3) is magnified, on hills of at most 120 m
-                // between levels.
-                const double magnified =
-                    denominator > 0 ? 1e-6 * (h + q) / denominator * fraction * 120 : 0;
-                ASSERT_NEAR(world.z, expected, 2e-3 + magnified) << name << ", level " << l;
+                ++compared;
+                // Float weights and heights of 160 m: 1e-5 m each; levels differ by at most 120 m.
+                ASSERT_NEAR(world.z, expected, 2e-3 + (parent ? 120 * wanted.tolerance : 0))
+                    << name << ", level " << exact << ", row " << row << ", column " << column;
             }
         }
-        EXPECT_GE(levels_seen.size(), 6U);
     }
+    EXPECT_LT(passed_over, compared / 5);
+    EXPECT_GE(levels_seen.size(), GetParam().finest_only ? 1U : 6U);
 }
+
+INSTANTIATE_TEST_SUITE_P(of, PgmHeights,
+                         testing::Values(Sampling{"spacing", "neighbour", "parent"},
+                                         Sampling{"spacing", "neighbour", "bilinear"},
+                                         Sampling{"spacing", "neighbour", "nearest"},
+                                         Sampling{"spacing", "formula", "parent"},
+                                         Sampling{"spacing", "formula", "bilinear"},
+                                         Sampling{"distance", "neighbour", "parent"},
+                                         Sampling{"distance", "neighbour", "nearest"},
+                                         Sampling{"spacing", "neighbour", "bilinear", true}));
 
 // As bits: an edge inside the grid is used by two triangles, one on its border by one.
 TEST_F(PgmSurface, neighbouring_triangles_share_their_vertices_to_the_bit) {
