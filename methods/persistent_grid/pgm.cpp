@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "api/method.h"
@@ -15,25 +17,12 @@
 #include "gl/embedded_shaders.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "persistent_grid/height_atlas.h"
 #include "persistent_grid/mapping.h"
 #include "persistent_grid/pyramid.h"
 
 namespace lodbench::persistent_grid {
 namespace {
-
-namespace block {
-using glm::ivec4;
-using glm::vec4;
-#define BLOCK(binding_, name_) struct name_
-#include "persistent_grid/mapping_block.glsl"
-#undef BLOCK
-}  // namespace block
-using block::MappingBlock;
-constexpr GLuint kMappingBinding = gl::kFirstFreeBinding;  // PGM_MAPPING_BINDING of pgm.vert
-constexpr std::size_t kAtlasOffset = 80;
-constexpr std::size_t kMaximumLevels = 24;
-static_assert(offsetof(MappingBlock, atlas) == kAtlasOffset &&
-              sizeof(MappingBlock) == kAtlasOffset + 2 * 16 * kMaximumLevels);
 
 /// Two triangles a cell, in bands of eight columns from the horizon downward, so that a vertex is
 /// reused while it is still in the vertex cache. Neighbours share vertices by index, hence to the
@@ -82,32 +71,47 @@ std::string interpolation_rule(const Params& params) {
     return name == "bilinear" ? "PGM_BILINEAR" : "PGM_PARENT";
 }
 
+ClipOptions clip_options(const Params& params) {
+    const int texels = int(params.integer("window"));
+    if (!std::has_single_bit(unsigned(texels))) {
+        throw InputError(
+            fmt::format("window = {} is not a power of two; write 64, 128 ... 2048", texels));
+    }
+    return {.texels = texels,
+            .lines_per_frame = int(params.integer("lines_per_frame")),
+            .entire = params.choice("update") == "entire",
+            .loader_threads = int(params.integer("loader_threads"))};
+}
+
+enum class Storage { automatic, whole, windows };
+Storage storage(const Params& params) {
+    const std::string& name = params.choice("storage");
+    if (name == "auto") return Storage::automatic;
+    return name == "whole" ? Storage::whole : Storage::windows;
+}
+
 class PersistentGrid final : public Method {
 public:
     explicit PersistentGrid(const Params& params)
         : grid_(grid_size(params)),
           coverage_{params.real("margin"), params.boolean("extend")},
           base_near_ground_(params.choice("base") == "minimum-near"),
-          window_texels_(int(params.integer("window"))),
+          storage_(storage(params)),
+          windows_(clip_options(params)),
+          cache_(params.boolean("cache")),
           defines_{{"PGM_LEVEL", level_rule(params)},
                    {"PGM_INTERPOLATION", interpolation_rule(params)}} {}
 
     void prepare(const Terrain& terrain, gl::Device& device) override {
         info_ = terrain.info();
-        const AtlasLayout layout = whole_layout(info_);
-        const int limit = device.info().max_texture_size;
-        if (layout.size.x > limit || layout.size.y > limit) {
-            throw EnvironmentError(
-                fmt::format("pgm holds the terrain's pyramid in one texture: {} x {} samples make "
-                            "one of {} x {}, more than the {} x {} that this driver allows; use a "
-                            "smaller terrain",
-                            info_.columns, info_.rows, layout.size.x, layout.size.y, limit, limit));
+        if (in_windows()) {
+            require_texture(device, {windows_.texels, windows_.texels}, "lower window");
+            heights_ = std::make_unique<ClipAtlas>(terrain, windows_, cache_);
+        } else {
+            require_texture(device, whole_layout(info_).size, "choose storage = \"windows\"");
+            heights_ = std::make_unique<WholeAtlas>(terrain);
         }
-        Level finest{info_.columns, info_.rows, {}};
-        finest.heights.resize(std::size_t(info_.columns) * std::size_t(info_.rows));
-        terrain.read({0, 0, info_.rows, info_.columns}, finest.heights);
-        if (base_near_ground_) local_minimum_ = LocalMinimum(finest);
-        levels_ = make_pyramid(std::move(finest));
+        if (base_near_ground_) local_minimum_ = LocalMinimum(terrain);
     }
 
     void upload(gl::Device& device) override {
@@ -116,9 +120,9 @@ public:
             device, "pgm", embedded_shaders(),
             {{GL_VERTEX_SHADER, "pgm.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
             defines_);
+        heights_->upload(device);
         block_ = {};
-        block_.grid = {grid_.columns, grid_.rows, int(levels_.size()), 0};
-        upload_pyramid(device);
+        block_.grid = {grid_.columns, grid_.rows, level_count(info_), 0};
         mapping_buffer_ =
             gl::Buffer(device, "pgm: mapping", sizeof block_, GL_DYNAMIC_STORAGE_BIT, &block_);
         const auto indices = grid_indices(grid_);
@@ -129,76 +133,95 @@ public:
     }
 
     void select(const Camera& camera, const Clock&) override {
-        base_height_ = 0;
-        if (base_near_ground_) {
-            const glm::dvec2 east_north =
-                (glm::dvec2(camera.position) - info_.origin) / info_.spacing;
-            base_height_ = local_minimum_.at({east_north.x, info_.rows - 1 - east_north.y});
-        }
+        const glm::dvec2 east_north = (glm::dvec2(camera.position) - info_.origin) / info_.spacing;
+        place_ = {east_north.x, info_.rows - 1 - east_north.y};
+        base_height_ = base_near_ground_ ? local_minimum_.at(place_) : 0;
         mapping_ = make_mapping(camera, info_, base_height_, coverage_, grid_);
-        block_.ray_first = glm::dvec4(mapping_.first, mapping_.eye_height);
-        block_.ray_across = glm::dvec4(mapping_.across, mapping_.far_distance);
-        block_.ray_down = glm::dvec4(mapping_.down, std::sin(mapping_.ray_angle));
-        block_.sampling =
-            glm::dvec4(std::cos(mapping_.ray_angle), 1 / std::max(info_.spacing.x, info_.spacing.y),
-                       2 / (window_texels_ * std::min(info_.spacing.x, info_.spacing.y)), 0);
-        mapping_buffer_.write(0, kAtlasOffset, &block_);  // the levels behind it never change
+        heights_->follow(place_, settled_);
+        freeze();
+    }
+
+    /// From the first call on every `select` waits for all that its windows lack.
+    void settle() override {
+        if (settled_) return;
+        settled_ = true;
+        heights_->follow(place_, true);
+        freeze();
     }
 
     void draw(const View&) override {
         mapping_buffer_.bind_uniform(kMappingBinding);
-        heights_.bind(0);
+        heights_->texture().bind(0);
         device_->draw_elements(program_, vertices_, GL_TRIANGLES, index_count_, GL_UNSIGNED_INT);
     }
 
+    void pause_background() override { heights_->pause(); }
+    void resume_background() override { heights_->resume(); }
+
     [[nodiscard]] Counters counters() const override {
-        return {{"auxiliary_pitch_degrees", mapping_.pitch * 57.295779513082320},
-                {"auxiliary_restricted", mapping_.restricted ? 1.0 : 0.0},
-                {"base_height_m", base_height_},
-                {"eye_height_above_base_m", mapping_.eye_height}};
+        Counters counters = {{"auxiliary_pitch_degrees", mapping_.pitch * 57.295779513082320},
+                             {"auxiliary_restricted", mapping_.restricted ? 1.0 : 0.0},
+                             {"base_height_m", base_height_},
+                             {"eye_height_above_base_m", mapping_.eye_height}};
+        heights_->add_counters(counters);
+        return counters;
     }
 
     void release(gl::Device&) override {
         vertices_ = {};
         indices_ = {};
         mapping_buffer_ = {};
-        heights_ = {};
+        heights_->release();
         program_ = {};
     }
 
 private:
-    void upload_pyramid(gl::Device& device) {
-        const AtlasLayout layout = whole_layout(info_);
-        heights_ = gl::Texture(device, "pgm: heights", GL_TEXTURE_2D, GL_R32F, layout.size.x,
-                               layout.size.y);
-        for (std::size_t i = 0; i < levels_.size(); ++i) {
-            const Level& level = levels_[i];
-            const glm::ivec2 origin = layout.origins[i];
-            heights_.write(0, origin.x, origin.y, level.columns, level.rows, GL_RED, GL_FLOAT,
-                           level.heights.data());
-            block_.atlas[i] = {origin.x, origin.y, -1, -1};
-            block_.windows[i] = {0, 0, level.columns - 1, level.rows - 1};
-        }
-        levels_ = {};  // the texture holds them from here on
+    [[nodiscard]] bool in_windows() const {
+        // 4097 x 4097 samples: 90 MiB with the pyramid.
+        constexpr std::int64_t kMostWhole = std::int64_t(4097) * 4097;
+        return storage_ == Storage::windows ||
+               (storage_ == Storage::automatic &&
+                std::int64_t(info_.rows) * info_.columns > kMostWhole);
+    }
+    void require_texture(const gl::Device& device, glm::ivec2 size, const char* remedy) const {
+        const int limit = device.info().max_texture_size;
+        if (size.x <= limit && size.y <= limit) return;
+        throw EnvironmentError(
+            fmt::format("pgm holds the pyramid of {} x {} samples in one texture of {} x {}, more "
+                        "than the {} x {} that this driver allows; {}",
+                        info_.columns, info_.rows, size.x, size.y, limit, limit, remedy));
+    }
+    void freeze() {
+        block_.ray_first = glm::dvec4(mapping_.first, mapping_.eye_height);
+        block_.ray_across = glm::dvec4(mapping_.across, mapping_.far_distance);
+        block_.ray_down = glm::dvec4(mapping_.down, std::sin(mapping_.ray_angle));
+        block_.sampling =
+            glm::dvec4(std::cos(mapping_.ray_angle), 1 / std::max(info_.spacing.x, info_.spacing.y),
+                       2 / (windows_.texels * std::min(info_.spacing.x, info_.spacing.y)), 0);
+        heights_->describe(block_);
+        mapping_buffer_.write(0, sizeof block_, &block_);
     }
 
     GridSize grid_;
     Coverage coverage_;
     bool base_near_ground_;
-    int window_texels_;
+    Storage storage_;
+    ClipOptions windows_;
+    bool cache_;
     std::map<std::string, std::string> defines_;  ///< of the program
     TerrainInfo info_;
-    std::vector<Level> levels_;  ///< between prepare and upload
     LocalMinimum local_minimum_;
+    std::unique_ptr<HeightAtlas> heights_;
     gl::Device* device_ = nullptr;
     gl::Program program_;
-    gl::Texture heights_;
     gl::Buffer mapping_buffer_, indices_;
     gl::VertexArray vertices_;
     GLsizei index_count_ = 0;
     MappingBlock block_{};
     Mapping mapping_;
+    glm::dvec2 place_{0};  ///< of the viewpoint, in samples
     double base_height_ = 0;
+    bool settled_ = false;
 };
 
 constexpr ParamSpec kParams[] = {
@@ -219,7 +242,18 @@ constexpr ParamSpec kParams[] = {
     boolean_param("finest_only", false, "samples the finest level alone, without the pyramid"),
     integer_param("window", 512, 64, 2048,
                   "texels along an edge of a clip window, a power of two; level = distance "
-                  "measures by half the finest")};
+                  "measures by half the finest"),
+    choice_param("storage", "auto", "auto|whole|windows",
+                 "whole: the pyramid is one texture; windows: clip windows about the viewpoint, "
+                 "filled from a file; auto: whole up to 4097 x 4097 samples"),
+    choice_param("update", "toroidal", "toroidal|entire",
+                 "of the windows: what a move brings in, or all of them in every frame"),
+    integer_param("lines_per_frame", 64, 1, 65536,
+                  "rows and columns of the windows that are written in a frame at most; without "
+                  "limit in lockstep"),
+    integer_param("loader_threads", 2, 1, 16, "threads that read what the windows lack"),
+    boolean_param("cache", true,
+                  "keeps the pyramid's file for the next time; false: makes it anew")};
 
 constexpr MethodDescriptor kMethods[] = {
     {.id = "pgm",
@@ -228,7 +262,7 @@ constexpr MethodDescriptor kMethods[] = {
          "Yotam Livny, Neta Sokolovsky, Tal Grinshpoun, Jihad El-Sana (2006): Persistent Grid "
          "Mapping: A GPU-based Framework for Interactive Terrain Rendering",
      .version = "2",
-     .capabilities = 0,
+     .capabilities = kAsynchronous | kOutOfCore,
      .gl_extensions = nullptr,
      .params = kParams,
      .param_count = std::size(kParams),

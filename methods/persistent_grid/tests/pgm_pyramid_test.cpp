@@ -5,6 +5,7 @@
 #include <random>
 
 #include "persistent_grid/pyramid.h"
+#include "terrain/height_field.h"
 
 namespace lodbench::persistent_grid {
 namespace {
@@ -105,20 +106,27 @@ TEST(PgmPyramid, whole_levels_lie_apart) {
     }
 }
 
+std::shared_ptr<const terrain::HeightField> make_terrain(int rows, int columns, auto height) {
+    Level level = make_level(rows, columns, height);
+    TerrainInfo info = info_of(rows, columns);
+    info.name = "made up";
+    return std::make_shared<terrain::HeightField>(info, std::move(level.heights));
+}
+
 TEST(PgmLocalMinimum, never_lies_above_the_ground_of_its_own_tile_and_moves_without_jumps) {
     std::mt19937 random(3);
-    const Level level = make_level(300, 500, [&](int, int) {
+    const auto terrain = make_terrain(300, 500, [&](int, int) {
         return std::uniform_real_distribution<double>(0, 1000)(random);
     });
-    const LocalMinimum minimum(level);
+    const LocalMinimum minimum(*terrain);
     double previous = minimum.at({0, 150});
     for (double column = 0; column < 499; column += 0.125) {
         const double here = minimum.at({column, 150});
-        const int tile = int(column) / 64;
+        const int tile = int(column) / kTileCells;
         double lowest = 1e9;
-        for (int r = 128; r < 192; ++r) {
-            for (int c = tile * 64; c < std::min(tile * 64 + 64, 500); ++c) {
-                lowest = std::min(lowest, double(level.at(r, c)));
+        for (int r = 128; r <= 192; ++r) {
+            for (int c = tile * kTileCells; c < std::min((tile + 1) * kTileCells + 1, 500); ++c) {
+                lowest = std::min(lowest, double(terrain->samples()[std::size_t(r * 500 + c)]));
             }
         }
         ASSERT_LE(here, lowest + 1e-9);
@@ -129,13 +137,14 @@ TEST(PgmLocalMinimum, never_lies_above_the_ground_of_its_own_tile_and_moves_with
 }
 
 TEST(PgmLocalMinimum, is_that_of_the_edge_outside_the_terrain) {
-    const Level level =
-        make_level(65, 65, [](int row, int column) { return row == 64 && column == 64 ? 1 : 9; });
-    const LocalMinimum minimum(level);
+    const auto corner = make_terrain(
+        129, 129, [](int row, int column) { return row == 128 && column == 128 ? 1 : 9; });
+    const LocalMinimum minimum(*corner);
     EXPECT_EQ(minimum.at({-1e9, 1e9}), 1);
     EXPECT_EQ(minimum.at({-1e9, -1e9}),
               1);  // two tiles an axis: every tile is a neighbour of the last
-    EXPECT_EQ(LocalMinimum(make_level(500, 500, [](int r, int) { return r; })).at({1e7, 1e7}), 384);
+    const auto slope = make_terrain(500, 500, [](int row, int) { return row; });
+    EXPECT_EQ(LocalMinimum(*slope).at({1e7, 1e7}), 384);  // the last tile but one begins there
 }
 
 }  // namespace

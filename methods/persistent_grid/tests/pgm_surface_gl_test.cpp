@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 #include "persistent_grid/mapping.h"
@@ -300,6 +301,141 @@ TEST_F(PgmSurface, no_triangle_folds_over_in_plan) {
                 << name << ", triangle " << i / 3;
         }
     }
+}
+
+/// Settings of kSettings and more.
+std::vector<std::pair<std::string, std::string>> with(
+    const std::vector<std::pair<std::string, std::string>>& more) {
+    auto settings = kSettings;
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+}
+
+/// From each camera, in one flight, with nothing missing.
+std::vector<measure::CapturedSurface> settled_surfaces(
+    const std::shared_ptr<const Terrain>& terrain,
+    const std::vector<std::pair<std::string, std::string>>& settings,
+    const std::vector<NamedCamera>& cameras) {
+    Flight flight(terrain, "persistent_grid", "pgm", settings);
+    std::vector<measure::CapturedSurface> surfaces;
+    for (const auto& [name, camera] : cameras) {
+        flight.select(camera);
+        flight.stage().settle();
+        surfaces.push_back(flight.stage().capture());
+    }
+    return surfaces;
+}
+
+bool equal_bits(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+// Windows as large as the terrain hold all of it.
+TEST(PgmOutOfCore, is_what_it_is_in_core_to_the_bit_where_the_windows_hold_the_levels) {
+    const auto terrain = hills(201, 166);
+    const auto all = cameras(terrain->info());
+    for (const std::string level : {"spacing", "distance"}) {
+        const auto whole = settled_surfaces(
+            terrain, with({{"storage", "whole"}, {"level", level}, {"window", "256"}}), all);
+        const auto windows = settled_surfaces(
+            terrain,
+            with({{"storage", "windows"}, {"level", level}, {"window", "256"}, {"cache", "false"}}),
+            all);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            EXPECT_TRUE(equal_bits(windows[i].vertices, whole[i].vertices))
+                << all[i].name << ", " << level;
+        }
+    }
+}
+
+// Small ones hold a part: where that is what a vertex needs, it is the same vertex. Elsewhere its
+// height comes from a coarser level.
+TEST(PgmOutOfCore, a_vertex_whose_texels_the_windows_hold_is_that_in_core_to_the_bit) {
+    constexpr int kWindow = 64;
+    const auto terrain = hills(500, 700);
+    const TerrainInfo& info = terrain->info();
+    const auto all_cameras = cameras(info);
+    const auto whole = settled_surfaces(terrain, with({{"storage", "whole"}}), all_cameras);
+    const auto windows = settled_surfaces(
+        terrain, with({{"storage", "windows"}, {"window", "64"}, {"cache", "false"}}), all_cameras);
+    int the_same = 0, coarser = 0;
+    const int last = persistent_grid::level_count(info) - 1;
+    for (std::size_t frame = 0; frame < all_cameras.size(); ++frame) {
+        const auto& [name, camera] = all_cameras[frame];
+        const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, {kMargin}, kGrid);
+        const auto expected = grid_vertices(whole[frame]);
+        const auto found = grid_vertices(windows[frame]);
+        const auto place_of = [&](const glm::dvec2& world) {
+            const glm::dvec2 samples = (world - info.origin) / info.spacing;
+            return glm::dvec2(samples.x, info.rows - 1 - samples.y);
+        };
+        // Whether the middle of a window holds the four texels around a place, by a texel to spare.
+        const auto held = [&](int level, const glm::dvec2& place) {
+            const glm::dvec2 size(persistent_grid::level_size(info, level));
+            const glm::dvec2 texel = (place + 0.5) / std::exp2(level) - 0.5;
+            const glm::dvec2 eye =
+                (place_of(glm::dvec2(camera.position)) + 0.5) / std::exp2(level) - 0.5;
+            const glm::dvec2 low = glm::clamp(eye - kWindow / 2.0 + 2.0, glm::dvec2(0),
+                                              glm::max(size - double(kWindow), 0.0));
+            const glm::dvec2 read = glm::clamp(texel, glm::dvec2(0), size - 1.0);
+            return glm::all(glm::greaterThanEqual(read, low)) &&
+                   glm::all(glm::lessThanEqual(read + 1.0, low + (kWindow - 3.0)));
+        };
+        for (int row = 0; row < kGrid.rows; ++row) {
+            for (int column = 0; column < kGrid.columns; ++column) {
+                const auto i = std::size_t(row * kGrid.columns + column);
+                ASSERT_EQ(found[i].x, expected[i].x) << name;
+                ASSERT_EQ(found[i].y, expected[i].y) << name;
+                const double r = persistent_grid::farthest_neighbour(mapping, kGrid, column, row);
+                const double texels = std::max(r / 12.5, 1.0) * 0.999;
+                const int level = std::min(last, int(std::max(0.0, std::floor(std::log2(texels)))));
+                const glm::dvec2 place =
+                    place_of(glm::dvec2(camera.position) + glm::dvec2(expected[i]));
+                // The level, the next (where rounding may put r) and its parent.
+                bool all = true;
+                for (int l = level; l <= std::min(level + 2, last); ++l) all &= held(l, place);
+                if (all) {
+                    ASSERT_EQ(found[i].z, expected[i].z) << name << ": " << row << ", " << column;
+                    ++the_same;
+                } else {
+                    coarser += found[i].z != expected[i].z ? 1 : 0;
+                }
+            }
+        }
+    }
+    EXPECT_GT(the_same, 5000);
+    EXPECT_GT(coarser, 50);
+}
+
+TEST(PgmOutOfCore, what_is_drawn_depends_on_the_camera_alone_once_it_has_settled) {
+    const auto terrain = hills(500, 700);
+    const auto settings = with({{"storage", "windows"}, {"window", "64"}, {"cache", "false"}});
+    const auto all = cameras(terrain->info());
+    const auto flown = settled_surfaces(terrain, settings, all);
+    auto entire = settings;
+    entire.emplace_back("update", "entire");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto fresh = settled_surfaces(terrain, entire, {all[i]});
+        EXPECT_TRUE(equal_bits(flown[i].vertices, fresh[0].vertices)) << all[i].name;
+    }
+}
+
+// In its first frames, before anything has been read: the levels that are in memory.
+TEST(PgmOutOfCore, before_anything_is_read_the_coarse_levels_are_drawn) {
+    const auto terrain = hills(500, 700);
+    Flight flight(terrain, "persistent_grid", "pgm",
+                  with({{"storage", "windows"}, {"window", "64"}, {"cache", "false"}}));
+    flight.stage().pause_background();
+    const auto surface = flight.surface(cameras(terrain->info()).front().camera);
+    EXPECT_EQ(flight.counter("windows_behind"), 4) << "500 x 700 to 63 x 88 texels";
+    for (const glm::vec3& vertex : surface.vertices) {
+        const double height = double(vertex.z) + surface.origin.z;
+        ASSERT_GE(height, terrain->info().min_height);
+        ASSERT_LE(height, terrain->info().max_height);
+    }
+    flight.stage().resume_background();
+    flight.stage().settle();
+    EXPECT_EQ(flight.counter("windows_behind"), 0);
 }
 
 TEST(PgmSurfaceOverAPlane, straight_down_it_is_the_uniform_grid) {
