@@ -189,6 +189,10 @@ MeanPyramid::MeanPyramid(const Terrain& terrain, const std::vector<std::filesyst
     tile_count_ = pyramid.count() - std::size_t(pyramid.rows(0)) * std::size_t(pyramid.columns(0));
     const std::string name =
         fmt::format("pgm-means-{}-{}x{}", info_.checksum, info_.rows, info_.columns);
+    if (tile_count_ == 0) {  // nothing that would not fit into memory
+        read_small();
+        return;
+    }
     if (!info_.checksum.empty()) {
         for (const std::filesystem::path& folder : folders) {
             if (open(folder / name)) {

@@ -66,7 +66,11 @@ TEST(PgmMeanPyramid, holds_the_means_of_the_one_in_memory_to_the_bit) {
         SCOPED_TRACE(fmt::format("{} x {}", rows, columns));
         expect_means(pyramid, in_memory(*terrain));
         EXPECT_FALSE(pyramid.was_cached());
-        EXPECT_EQ(fs::file_size(pyramid.file()), pyramid.file_bytes());
+        if (pyramid.tiles().levels() == 1) {
+            EXPECT_TRUE(fs::is_empty(folder.path())) << "small enough for memory";
+        } else {
+            EXPECT_EQ(fs::file_size(pyramid.file()), pyramid.file_bytes());
+        }
     }
 }
 
