@@ -15,10 +15,19 @@
 
 namespace lodbench::persistent_grid {
 
-/// The grid's resolution: vertices along each axis, both at least 2.
+/// The grid's resolution: vertices along each axis, both at least 2; and how its rows lie.
 struct GridSize {
     int columns = 2;
     int rows = 2;
+    /// Absent from the paper, which leaves the distribution open: row k of n lies at (k / (n -
+    /// 1))^2 of the way down, closer to its neighbours the nearer it is to the horizon.
+    bool denser_at_horizon = false;
+
+    /// Of the way from the horizon to the bottom.
+    [[nodiscard]] double way_down(int row) const {
+        const double t = double(row) / (rows - 1);
+        return denser_at_horizon ? t * t : t;
+    }
 };
 
 /// The rays of the grid's vertices and the plane that they meet. The ray of vertex (column i, row
@@ -143,8 +152,7 @@ inline glm::dvec2 ground_point(const Mapping& mapping, const glm::dvec3& ray) {
 inline double farthest_neighbour(const Mapping& mapping, const GridSize& grid, int column,
                                  int row) {
     const auto ground = [&](int i, int j) {
-        return ground_point(
-            mapping, mapping.ray(double(i) / (grid.columns - 1), double(j) / (grid.rows - 1)));
+        return ground_point(mapping, mapping.ray(double(i) / (grid.columns - 1), grid.way_down(j)));
     };
     const glm::dvec2 here = ground(column, row);
     double farthest = 0;

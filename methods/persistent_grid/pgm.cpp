@@ -45,6 +45,13 @@ std::vector<std::uint32_t> grid_indices(const GridSize& grid) {
     return indices;
 }
 
+/// PGM_LEVEL of pgm.vert.
+std::string level_rule(const Params& params) {
+    if (params.boolean("finest_only")) return "PGM_FINEST_ONLY";
+    if (params.choice("level") == "distance") return "PGM_BY_DISTANCE";
+    return params.choice("spacing") == "formula" ? "PGM_BY_FORMULA" : "PGM_BY_NEIGHBOUR";
+}
+
 GridSize grid_size(const Params& params) {
     constexpr double kMaximumVertices = 1 << 26;  // 1.6 GB of indices
     const int rows = int(params.integer("grid"));
@@ -54,14 +61,13 @@ GridSize grid_size(const Params& params) {
             fmt::format("grid = {} with aspect = {} makes {} vertices, more than {}; lower one",
                         rows, params.real("aspect"), columns * rows, kMaximumVertices));
     }
-    return {int(columns), rows};
-}
-
-/// PGM_LEVEL of pgm.vert.
-std::string level_rule(const Params& params) {
-    if (params.boolean("finest_only")) return "PGM_FINEST_ONLY";
-    if (params.choice("level") == "distance") return "PGM_BY_DISTANCE";
-    return params.choice("spacing") == "formula" ? "PGM_BY_FORMULA" : "PGM_BY_NEIGHBOUR";
+    const bool denser_at_horizon = params.choice("rows") == "horizon";
+    if (denser_at_horizon && level_rule(params) == "PGM_BY_FORMULA") {
+        throw InputError(
+            "spacing = \"formula\" does not go with rows = \"horizon\": equation (3) has one angle "
+            "between all rows; choose spacing = \"neighbour\"");
+    }
+    return {int(columns), rows, denser_at_horizon};
 }
 
 /// PGM_INTERPOLATION of pgm.vert.
@@ -99,8 +105,10 @@ public:
           storage_(storage(params)),
           windows_(clip_options(params)),
           cache_(params.boolean("cache")),
-          defines_{{"PGM_LEVEL", level_rule(params)},
-                   {"PGM_INTERPOLATION", interpolation_rule(params)}} {}
+          defines_{
+              {"PGM_LEVEL", level_rule(params)},
+              {"PGM_INTERPOLATION", interpolation_rule(params)},
+              {"PGM_ROWS", grid_.denser_at_horizon ? "PGM_DENSER_AT_HORIZON" : "PGM_UNIFORM"}} {}
 
     void prepare(const Terrain& terrain, gl::Device& device) override {
         info_ = terrain.info();
@@ -228,6 +236,8 @@ constexpr ParamSpec kParams[] = {
     integer_param("grid", 600, 2, 4096,
                   "rows of the grid: vertices from top to bottom of the picture"),
     real_param("aspect", 0.25, 0.05, 20, "columns of the grid per row (150 x 600: 0.25)"),
+    choice_param("rows", "uniform", "uniform|horizon",
+                 "how the rows lie in the picture: evenly, or closer to the horizon"),
     real_param("margin", 0.05, 0, 1, "part by which the grid extends beyond the picture"),
     boolean_param("extend", true, "extends the vertical field of view to 90 degrees at least"),
     choice_param("base", "zero", "zero|minimum-near",

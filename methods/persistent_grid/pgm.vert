@@ -4,7 +4,7 @@
 
 #include "common/terrain.glsl"
 
-// PGM_LEVEL and PGM_INTERPOLATION are one of these each.
+// PGM_LEVEL, PGM_INTERPOLATION and PGM_ROWS are one of these each.
 #define PGM_FINEST_ONLY 0
 #define PGM_BY_NEIGHBOUR 1
 #define PGM_BY_FORMULA 2
@@ -12,6 +12,8 @@
 #define PGM_NEAREST 0
 #define PGM_BILINEAR 1
 #define PGM_PARENT 2
+#define PGM_UNIFORM 0
+#define PGM_DENSER_AT_HORIZON 1
 
 #define PGM_MAPPING_BINDING 2
 #include "mapping_block.glsl"
@@ -21,6 +23,7 @@ layout(binding = 0) uniform sampler2D heights;
 // (1) P = V + v_z / (v_z - g_z) (G - V), relative to the viewpoint; z: the distance before it is compressed.
 vec3 ground_point(ivec2 node) {
     vec2 t = vec2(node) / vec2(grid.xy - 1);
+    if (PGM_ROWS == PGM_DENSER_AT_HORIZON) t.y *= t.y;
     vec3 ray = ray_first.xyz + t.x * ray_across.xyz + t.y * ray_down.xyz;
     float eye_height = ray_first.w;
     float far_distance = ray_across.w;

@@ -82,6 +82,23 @@ TEST(PgmMapping, the_farthest_neighbour_is_that_of_the_wider_step) {
     }
 }
 
+TEST(PgmMapping, rows_denser_at_the_horizon_keep_its_ends_and_order) {
+    const GridSize grid{2, 101, true};
+    EXPECT_EQ(grid.way_down(0), 0);
+    EXPECT_EQ(grid.way_down(100), 1);
+    EXPECT_EQ(grid.way_down(50), 0.25);
+    // Far away the steps over the ground are shorter than those of even rows, near by longer.
+    const Mapping mapping = make_mapping(camera_with_pitch(0), terrain(), 0, {}, grid);
+    const auto step = [&](const GridSize& of, double way) {
+        int row = 1;
+        while (of.way_down(row) < way) ++row;
+        return farthest_neighbour(mapping, of, 0, row);
+    };
+    const GridSize even{1001, 101}, denser{1001, 101, true};
+    EXPECT_LT(step(denser, 0.02), step(even, 0.02) / 2);
+    EXPECT_GT(step(denser, 0.9), step(even, 0.9) * 1.5);
+}
+
 // (3) knows the rows alone and takes the angle between them for one and the same: at the middle
 // column of a narrow field of view, where both hold, it is the distance to the next row.
 TEST(PgmMapping, equation_3_stands_for_the_distance_to_the_next_row) {

@@ -98,15 +98,14 @@ TEST_F(PgmSurface, is_finite_and_has_the_same_number_of_triangles_for_every_came
     }
 }
 
-TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
-    for (const auto& [name, camera] : cameras(terrain_->info())) {
-        const Mapping mapping =
-            persistent_grid::make_mapping(camera, terrain_->info(), 0, {kMargin}, kGrid);
-        const auto vertices = grid_vertices(flight_.surface(camera));
+void expect_mapped(Flight& flight, const TerrainInfo& info, const GridSize& grid) {
+    for (const auto& [name, camera] : cameras(info)) {
+        const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, {kMargin}, grid);
+        const auto vertices = grid_vertices(flight.surface(camera));
         for (int row = 0; row < kGrid.rows; ++row) {
             for (int column = 0; column < kGrid.columns; ++column) {
-                const glm::dvec3 ray = mapping.ray(double(column) / (kGrid.columns - 1),
-                                                   double(row) / (kGrid.rows - 1));
+                const glm::dvec3 ray =
+                    mapping.ray(double(column) / (kGrid.columns - 1), grid.way_down(row));
                 const glm::dvec2 expected = persistent_grid::ground_point(mapping, ray);
                 const glm::dvec2 found(vertices[std::size_t(row * kGrid.columns + column)]);
                 // A ray's components carry a few roundings of the sum they come from; the slope
@@ -122,6 +121,18 @@ TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
             }
         }
     }
+}
+
+TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
+    expect_mapped(flight_, terrain_->info(), kGrid);
+}
+
+TEST(PgmRows, denser_at_the_horizon_lie_where_the_mapping_in_double_puts_them) {
+    const auto terrain = hills(201, 166);
+    auto settings = kSettings;
+    settings.emplace_back("rows", "horizon");
+    Flight flight(terrain, "persistent_grid", "pgm", settings);
+    expect_mapped(flight, terrain->info(), {kGrid.columns, kGrid.rows, true});
 }
 
 /// Bilinear height of a level at a place in samples, as the README defines it.
