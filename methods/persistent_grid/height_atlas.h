@@ -10,6 +10,7 @@
 #include "gl/device.h"
 #include "gl/objects.h"
 #include "persistent_grid/clip_windows.h"
+#include "persistent_grid/colour_pyramid.h"
 #include "persistent_grid/mapping_block.h"
 #include "persistent_grid/mean_pyramid.h"
 #include "persistent_grid/pyramid.h"
@@ -24,8 +25,11 @@ public:
     HeightAtlas& operator=(const HeightAtlas&) = delete;
 
     virtual void upload(gl::Device& device) = 0;
-    void release() { texture_ = {}; }
-    [[nodiscard]] const gl::Texture& texture() const { return texture_; }
+    /// To the units from 0 up.
+    void bind() const {
+        for (std::size_t i = 0; i < textures_.size(); ++i) textures_[i].bind(GLuint(i));
+    }
+    void release() { textures_.clear(); }
     /// Follows the viewpoint, at a place in samples (x: columns, y: rows). `wait`: until all is
     /// there.
     virtual void follow(const glm::dvec2& /*place*/, bool /*wait*/) {}
@@ -36,34 +40,38 @@ public:
     virtual void add_counters(Counters& /*counters*/) const {}
 
 protected:
-    void make_texture(gl::Device& device, glm::ivec2 size) {
-        texture_ = gl::Texture(device, "pgm: heights", GL_TEXTURE_2D, GL_R32F, size.x, size.y);
+    gl::Texture& add_texture(gl::Device& device, GLenum format, glm::ivec2 size) {
+        return textures_.emplace_back(device, "pgm: heights", GL_TEXTURE_2D, format, size.x,
+                                      size.y);
     }
     void write(glm::ivec2 texel, glm::ivec2 size, const float* heights) {
-        texture_.write(0, texel.x, texel.y, size.x, size.y, GL_RED, GL_FLOAT, heights);
+        textures_.front().write(0, texel.x, texel.y, size.x, size.y, GL_RED, GL_FLOAT, heights);
     }
 
 private:
-    gl::Texture texture_;
+    std::vector<gl::Texture> textures_;
 };
+
+/// PGM_HEIGHTS of levels.glsl.
+enum class HeightLayout { floats, packed, texture_a_level };
 
 /// In core: all levels whole.
 class WholeAtlas final : public HeightAtlas {
 public:
-    explicit WholeAtlas(const Terrain& terrain) : info_(terrain.info()) {
+    WholeAtlas(const Terrain& terrain, HeightLayout heights)
+        : info_(terrain.info()), heights_(heights) {
         Level finest{info_.columns, info_.rows, {}};
         finest.heights.resize(std::size_t(info_.columns) * std::size_t(info_.rows));
         terrain.read({0, 0, info_.rows, info_.columns}, finest.heights);
         levels_ = make_pyramid(std::move(finest));
     }
     void upload(gl::Device& device) override {
-        const AtlasLayout layout = whole_layout(info_);
-        make_texture(device, layout.size);
-        for (std::size_t i = 0; i < levels_.size(); ++i) {
-            write(layout.origins[i], {levels_[i].columns, levels_[i].rows},
-                  levels_[i].heights.data());
+        switch (heights_) {
+            case HeightLayout::floats: upload_floats(device); break;
+            case HeightLayout::packed: upload_cells(device); break;
+            case HeightLayout::texture_a_level: upload_levels(device); break;
         }
-        levels_ = {};  // the texture holds them from here on
+        levels_ = {};  // the textures hold them from here on
     }
     void describe(MappingBlock& block) const override {
         const AtlasLayout layout = whole_layout(info_);
@@ -71,10 +79,39 @@ public:
             block.atlas[level] = {layout.origins[std::size_t(level)], -1, -1};
             block.windows[level] = {0, 0, level_size(info_, level) - 1};
         }
+        const HeightPacking packing(info_);
+        block.packing = {packing.lowest, packing.quantum, 0, 0};
     }
 
 private:
+    void upload_floats(gl::Device& device) {
+        const AtlasLayout layout = whole_layout(info_);
+        add_texture(device, GL_R32F, layout.size);
+        for (std::size_t i = 0; i < levels_.size(); ++i) {
+            write(layout.origins[i], {levels_[i].columns, levels_[i].rows},
+                  levels_[i].heights.data());
+        }
+    }
+    void upload_cells(gl::Device& device) {
+        const AtlasLayout layout = whole_layout(info_);
+        gl::Texture& texture = add_texture(device, GL_RGBA32UI, layout.size);
+        const HeightPacking packing(info_);
+        for (std::size_t i = 0; i < levels_.size(); ++i) {
+            const Level& parent = levels_[std::min(i + 1, levels_.size() - 1)];
+            texture.write(0, layout.origins[i].x, layout.origins[i].y, levels_[i].columns,
+                          levels_[i].rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                          height_cells(levels_[i], parent, packing).data());
+        }
+    }
+    void upload_levels(gl::Device& device) {
+        for (const Level& level : levels_) {
+            add_texture(device, GL_R32F, {level.columns, level.rows})
+                .write(0, 0, 0, level.columns, level.rows, GL_RED, GL_FLOAT, level.heights.data());
+        }
+    }
+
     TerrainInfo info_;
+    HeightLayout heights_;
     std::vector<Level> levels_;  ///< until `upload`
 };
 
@@ -88,7 +125,7 @@ public:
           windows_(pyramid_, options) {}
 
     void upload(gl::Device& device) override {
-        make_texture(device, windows_.texture_size());
+        add_texture(device, GL_R32F, windows_.texture_size());
         windows_.start(writer());
     }
     void follow(const glm::dvec2& place, bool wait) override {

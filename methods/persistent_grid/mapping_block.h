@@ -19,7 +19,7 @@ using block::MappingBlock;
 
 inline constexpr GLuint kMappingBinding = gl::kFirstFreeBinding;  // PGM_MAPPING_BINDING of pgm.vert
 inline constexpr std::size_t kMaximumLevels = 24;
-static_assert(offsetof(MappingBlock, atlas) == 80 &&
-              sizeof(MappingBlock) == 80 + 2 * 16 * kMaximumLevels);
+static_assert(offsetof(MappingBlock, atlas) == 96 &&
+              sizeof(MappingBlock) == 96 + 2 * 16 * kMaximumLevels);
 
 }  // namespace lodbench::persistent_grid

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "api/method.h"
@@ -17,6 +18,7 @@
 #include "gl/embedded_shaders.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "persistent_grid/colour_map.h"
 #include "persistent_grid/height_atlas.h"
 #include "persistent_grid/mapping.h"
 #include "persistent_grid/pyramid.h"
@@ -89,6 +91,45 @@ ClipOptions clip_options(const Params& params) {
             .loader_threads = int(params.integer("loader_threads"))};
 }
 
+Fetches fetches(const Params& params) {
+    const std::string& name = params.choice("fetches");
+    if (name == "shared") return Fetches::shared;
+    if (name == "multi-texture") return Fetches::colour_a_level;
+    if (name == "2") return Fetches::two;
+    return name == "1-with-parent" ? Fetches::one_of_16_bits : Fetches::one;
+}
+const char* name_in_shader(Fetches fetches) {
+    switch (fetches) {
+        case Fetches::shared: return "PGM_SHARED";
+        case Fetches::colour_a_level: return "PGM_COLOUR_A_LEVEL";
+        case Fetches::two: return "PGM_TWO_FETCHES";
+        case Fetches::one: return "PGM_ONE_FETCH";
+        case Fetches::one_of_16_bits: return "PGM_ONE_FETCH_16_BITS";
+    }
+    throw ContractError("pgm: a number of fetches that does not exist");
+}
+
+HeightLayout height_layout(const Params& params) {
+    const bool a_level = params.choice("fetches") == "multi-texture";
+    if (!params.boolean("packing")) {
+        return a_level ? HeightLayout::texture_a_level : HeightLayout::floats;
+    }
+    if (a_level || params.choice("interpolation") != "parent") {
+        throw InputError(
+            "packing = true holds four heights and their parents' in one texel; choose "
+            "interpolation = \"parent\" and fetches other than \"multi-texture\"");
+    }
+    return HeightLayout::packed;
+}
+const char* name_in_shader(HeightLayout heights) {
+    switch (heights) {
+        case HeightLayout::floats: return "PGM_FLOATS";
+        case HeightLayout::packed: return "PGM_PACKED";
+        case HeightLayout::texture_a_level: return "PGM_TEXTURE_A_LEVEL";
+    }
+    throw ContractError("pgm: a layout of heights that does not exist");
+}
+
 enum class Storage { automatic, whole, windows };
 Storage storage(const Params& params) {
     const std::string& name = params.choice("storage");
@@ -105,30 +146,42 @@ public:
           storage_(storage(params)),
           windows_(clip_options(params)),
           cache_(params.boolean("cache")),
-          defines_{
-              {"PGM_LEVEL", level_rule(params)},
-              {"PGM_INTERPOLATION", interpolation_rule(params)},
-              {"PGM_ROWS", grid_.denser_at_horizon ? "PGM_DENSER_AT_HORIZON" : "PGM_UNIFORM"}} {}
+          layout_(height_layout(params)),
+          fetches_(fetches(params)),
+          defines_{{"PGM_LEVEL", level_rule(params)},
+                   {"PGM_INTERPOLATION", interpolation_rule(params)},
+                   {"PGM_ROWS", grid_.denser_at_horizon ? "PGM_DENSER_AT_HORIZON" : "PGM_UNIFORM"},
+                   {"PGM_HEIGHTS", name_in_shader(layout_)},
+                   {"PGM_FETCHES", name_in_shader(fetches_)}} {
+        if (params.choice("fetches") == "1-interpolated") {
+            defines_["PGM_INTERPOLATED_COORDINATES"] = "";
+        }
+    }
 
     void prepare(const Terrain& terrain, gl::Device& device) override {
         info_ = terrain.info();
         if (in_windows()) {
+            require_plain();
             require_texture(device, {windows_.texels, windows_.texels}, "lower window");
             heights_ = std::make_unique<ClipAtlas>(terrain, windows_, cache_);
         } else {
             require_texture(device, whole_layout(info_).size, "choose storage = \"windows\"");
-            heights_ = std::make_unique<WholeAtlas>(terrain);
+            heights_ = std::make_unique<WholeAtlas>(terrain, layout_);
+            if (fetches_ != Fetches::shared) colours_.emplace(terrain, fetches_);
         }
         if (base_near_ground_) local_minimum_ = LocalMinimum(terrain);
     }
 
     void upload(gl::Device& device) override {
         device_ = &device;
-        program_ = gl::Program(
-            device, "pgm", embedded_shaders(),
-            {{GL_VERTEX_SHADER, "pgm.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
-            defines_);
+        name_levels();
+        program_ = gl::Program(device, "pgm", embedded_shaders(),
+                               {{GL_VERTEX_SHADER, "pgm.vert"},
+                                {GL_FRAGMENT_SHADER,
+                                 fetches_ == Fetches::shared ? "common/terrain.frag" : "pgm.frag"}},
+                               defines_);
         heights_->upload(device);
+        if (colours_) colours_->upload(device);
         block_ = {};
         block_.grid = {grid_.columns, grid_.rows, level_count(info_), 0};
         mapping_buffer_ =
@@ -159,7 +212,8 @@ public:
 
     void draw(const View&) override {
         mapping_buffer_.bind_uniform(kMappingBinding);
-        heights_->texture().bind(0);
+        heights_->bind();
+        if (colours_) colours_->bind();
         device_->draw_elements(program_, vertices_, GL_TRIANGLES, index_count_, GL_UNSIGNED_INT);
     }
 
@@ -180,6 +234,7 @@ public:
         indices_ = {};
         mapping_buffer_ = {};
         heights_->release();
+        if (colours_) colours_->release();
         program_ = {};
     }
 
@@ -190,6 +245,29 @@ private:
         return storage_ == Storage::windows ||
                (storage_ == Storage::automatic &&
                 std::int64_t(info_.rows) * info_.columns > kMostWhole);
+    }
+    /// What windows cannot hold.
+    void require_plain() const {
+        if (layout_ == HeightLayout::floats && fetches_ == Fetches::shared) return;
+        throw InputError(fmt::format(
+            "packing and the colour map are in core only, and {} x {} samples are in clip windows; "
+            "choose storage = \"whole\", or packing = false and fetches = \"shared\"",
+            info_.columns, info_.rows));
+    }
+    /// The cases of the shaders' switches, where each level has a texture of its own.
+    void name_levels() {
+        constexpr int kMostTextures = 16;  // of a stage, as every device has
+        const int levels = level_count(info_);
+        if (layout_ == HeightLayout::texture_a_level && levels > kMostTextures) {
+            throw InputError(fmt::format(
+                "fetches = \"multi-texture\" needs {} textures for {} x {} samples, more than {}; "
+                "choose 1 or 2",
+                levels, info_.columns, info_.rows, kMostTextures));
+        }
+        std::string cases;
+        for (int level = 0; level < levels; ++level) cases += fmt::format("PGM_CASE({}) ", level);
+        defines_["PGM_TEXTURES"] = std::to_string(levels);
+        defines_["PGM_CASES"] = cases;
     }
     void require_texture(const gl::Device& device, glm::ivec2 size, const char* remedy) const {
         const int limit = device.info().max_texture_size;
@@ -216,10 +294,13 @@ private:
     Storage storage_;
     ClipOptions windows_;
     bool cache_;
+    HeightLayout layout_;
+    Fetches fetches_;
     std::map<std::string, std::string> defines_;  ///< of the program
     TerrainInfo info_;
     LocalMinimum local_minimum_;
     std::unique_ptr<HeightAtlas> heights_;
+    std::optional<ColourMap> colours_;
     gl::Device* device_ = nullptr;
     gl::Program program_;
     gl::Buffer mapping_buffer_, indices_;
@@ -253,6 +334,13 @@ constexpr ParamSpec kParams[] = {
     integer_param("window", 512, 64, 2048,
                   "texels along an edge of a clip window, a power of two; level = distance "
                   "measures by half the finest"),
+    choice_param(
+        "fetches", "shared", "shared|multi-texture|2|1|1-with-parent|1-interpolated",
+        "of the colour map for each fragment: 2 or 1 of one texture; 1 with the parent, in "
+        "16 bits; 1 at the vertices' coordinates (figure 14); a texture a level, heights "
+        "too; shared: no map, the shading that all methods share"),
+    boolean_param("packing", false,
+                  "a vertex reads its height in one fetch, in steps of 1/65535 of the range"),
     choice_param("storage", "auto", "auto|whole|windows",
                  "whole: the pyramid is one texture; windows: clip windows about the viewpoint, "
                  "filled from a file; auto: whole up to 4097 x 4097 samples"),

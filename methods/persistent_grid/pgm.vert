@@ -4,21 +4,22 @@
 
 #include "common/terrain.glsl"
 
-// PGM_LEVEL, PGM_INTERPOLATION and PGM_ROWS are one of these each.
-#define PGM_FINEST_ONLY 0
-#define PGM_BY_NEIGHBOUR 1
-#define PGM_BY_FORMULA 2
-#define PGM_BY_DISTANCE 3
-#define PGM_NEAREST 0
-#define PGM_BILINEAR 1
-#define PGM_PARENT 2
-#define PGM_UNIFORM 0
-#define PGM_DENSER_AT_HORIZON 1
+#include "levels.glsl"
 
-#define PGM_MAPPING_BINDING 2
-#include "mapping_block.glsl"
-
+#if PGM_HEIGHTS == PGM_FLOATS
 layout(binding = 0) uniform sampler2D heights;
+#elif PGM_HEIGHTS == PGM_PACKED
+layout(binding = 0) uniform usampler2D height_cells;
+#else
+layout(binding = 0) uniform sampler2D height_levels[PGM_TEXTURES];
+#endif
+
+#if PGM_FETCHES != PGM_SHARED
+out float pgm_texels;  // what detail_of takes
+#endif
+#ifdef PGM_INTERPOLATED_COORDINATES
+out vec2 pgm_atlas_place;
+#endif
 
 // (1) P = V + v_z / (v_z - g_z) (G - V), relative to the viewpoint; z: the distance before it is compressed.
 vec3 ground_point(ivec2 node) {
@@ -58,67 +59,15 @@ float spacing_by_formula(float distance_on_plane) {
     return denominator > 0.0 ? (q * q + eye_height * eye_height) * ray_down.w / denominator : 1e30;
 }
 
-// The level, and the weight W of its parent.
-struct Detail {
-    int level;
-    float parent_weight;
-};
-
-// The level whose texel is at most `texels` finest ones wide, and whose parent's is wider. (4) with the
-// distance r of (3): W = clamp(r / texel(level) - 1, 0, 1). See the README.
-Detail detail_by_spacing(float texels) {
-    if (texels <= 1.0) return Detail(0, 0.0);
-    int exponent;
-    float mantissa = frexp(min(texels, 1e9), exponent);
-    return Detail(exponent - 1, clamp(2.0 * mantissa - 1.0, 0.0, 1.0));
-}
-
-// Section 4: each level for the ring of its clip window, whose half is 2^level units wide. (4) as printed,
-// W = dist / 2^(lod - 1) - 1, runs from 0 to 1 across that ring.
-Detail detail_by_distance(float units) {
-    int exponent;
-    float mantissa = frexp(units, exponent);
-    if (exponent < 0) return Detail(0, 0.0);
-    return Detail(exponent, clamp(2.0 * mantissa - 1.0, 0.0, 1.0));
-}
-
-Detail wanted_detail(ivec2 node, vec3 ground) {
-    Detail detail = Detail(0, 0.0);
-    if (PGM_LEVEL == PGM_BY_NEIGHBOUR) {
-        detail = detail_by_spacing(farthest_neighbour(node, ground.xy) * sampling.y);
-    } else if (PGM_LEVEL == PGM_BY_FORMULA) {
-        detail = detail_by_spacing(spacing_by_formula(ground.z) * sampling.y);
-    } else if (PGM_LEVEL == PGM_BY_DISTANCE) {
-        detail = detail_by_distance(min(ground.z, 2.0 * ray_across.w) * sampling.z);
-    }
-    if (PGM_INTERPOLATION != PGM_PARENT) detail.parent_weight = 0.0;
-    if (detail.level >= grid.z - 1) detail = Detail(grid.z - 1, 0.0);
-    return detail;
-}
-
-// The texels of a level around a place, and how far it lies between them. Outside of the terrain its edge
-// goes on.
-struct Footprint {
-    ivec2 first, last;
-    vec2 t;
-};
-
-// At `offset` samples (x: columns, y: rows) from the sample below the eye. Texel k stands at
-// (k + 1/2) 2^level - 1/2 samples. The eye's sample is split into whole texels and a remainder, so that the
-// fraction keeps its bits however large the grid.
-Footprint footprint(int level, vec2 offset) {
-    float scale = float(1 << level);
-    ivec2 whole = eye_sample.xy >> level;
-    vec2 remainder = vec2(eye_sample.xy - (whole << level));
-    vec2 place = offset / scale + ((remainder + 0.5) / scale - 0.5);
-    ivec2 end = ((eye_sample.zw - 1) >> level);
-    if (PGM_INTERPOLATION == PGM_NEAREST) {
-        ivec2 nearest = clamp(whole + ivec2(floor(place + 0.5)), ivec2(0), end);
-        return Footprint(nearest, nearest, vec2(0.0));
-    }
-    vec2 texel = floor(place);
-    ivec2 north_west = whole + ivec2(texel);
-    return Footprint(clamp(north_west, ivec2(0), end), clamp(north_west + 1, ivec2(0), end), place - texel);
+// How many finest texels wide the texels shall be that this vertex reads.
+float wanted_texels(ivec2 node, vec3 ground) {
+    if (PGM_LEVEL == PGM_BY_NEIGHBOUR) return farthest_neighbour(node, ground.xy) * sampling.y;
+    if (PGM_LEVEL == PGM_BY_FORMULA) return spacing_by_formula(ground.z) * sampling.y;
+    // Section 4: each level for the ring of its clip window, whose half is 2^level units wide. (4) as
+    // printed, W = dist / 2^(lod - 1) - 1, runs from 0 to 1 across that ring: as r / texel - 1 does for
+    // an r of 2 dist.
+    if (PGM_LEVEL == PGM_BY_DISTANCE) return 2.0 * min(ground.z, 2.0 * ray_across.w) * sampling.z;
+    return 0.0;
 }
 
 bool is_held(int level, vec2 offset) {
@@ -127,8 +76,28 @@ bool is_held(int level, vec2 offset) {
            all(lessThanEqual(texels.last, windows[level].zw));
 }
 
+#if PGM_HEIGHTS == PGM_PACKED
+// One fetch: the heights of the cell's corners in the lower 16 bits, those of the parent there in the upper.
+float detail_height(Detail detail, vec2 offset) {
+    Footprint texels = footprint(detail.level, offset);
+    uvec4 cell = texelFetch(height_cells, in_atlas(detail.level, texels.first), 0);
+    vec4 corners = mix(vec4(cell & 0xFFFFu), vec4(cell >> 16), detail.parent_weight);
+    vec2 rows = mix(corners.xz, corners.yw, texels.t.x);
+    return packing.x + packing.y * mix(rows.x, rows.y, texels.t.y);
+}
+#else
 float texel_height(int level, int column, int row) {
-    return texelFetch(heights, atlas[level].xy + (ivec2(column, row) & atlas[level].zw), 0).r;
+#if PGM_HEIGHTS == PGM_FLOATS
+    return texelFetch(heights, in_atlas(level, ivec2(column, row)), 0).r;
+#else
+    // Textures cannot be chosen by a number that differs between vertices.
+    switch (level) {
+#define PGM_CASE(level_) case level_: return texelFetch(height_levels[level_], ivec2(column, row), 0).r;
+        PGM_CASES
+#undef PGM_CASE
+    }
+    return 0.0;
+#endif
 }
 
 // Bilinear, in float by hand, since filters of hardware may weigh with 8 bits.
@@ -141,6 +110,15 @@ float level_height(int level, vec2 offset) {
                       texel_height(level, texels.last.x, texels.last.y), texels.t.x);
     return mix(north, south, texels.t.y);
 }
+
+float detail_height(Detail detail, vec2 offset) {
+    float height = level_height(detail.level, offset);
+    if (detail.parent_weight > 0.0) {
+        height = mix(height, level_height(detail.level + 1, offset), detail.parent_weight);
+    }
+    return height;
+}
+#endif
 
 // The finest level from the wanted one up of which the texture holds all that is read, the parent's texels
 // included. The coarsest level is always held.
@@ -159,13 +137,16 @@ Detail held_detail(Detail wanted, vec2 offset) {
 void main() {
     ivec2 node = ivec2(gl_VertexID % grid.x, gl_VertexID / grid.x);
     vec3 ground = ground_point(node);
-    // Beyond +-2^26 samples nothing but the edge is left to find, and integers stay integers.
-    vec2 offset = clamp((ground.xy + eye_offset.xy) / sample_spacing.xy, -67108864.0, 67108864.0);
-    offset.y = -offset.y;
-    Detail detail = held_detail(wanted_detail(node, ground), offset);
-    float height = level_height(detail.level, offset);
-    if (detail.parent_weight > 0.0) {
-        height = mix(height, level_height(detail.level + 1, offset), detail.parent_weight);
-    }
+    vec2 offset = samples_from_eye(ground.xy);
+    float texels = wanted_texels(node, ground);
+    Detail detail = held_detail(detail_of(texels), offset);
+    float height = detail_height(detail, offset);
+#if PGM_FETCHES != PGM_SHARED
+    pgm_texels = texels;
+#endif
+#ifdef PGM_INTERPOLATED_COORDINATES
+    Footprint texels_there = footprint(detail.level, offset);
+    pgm_atlas_place = vec2(in_atlas(detail.level, texels_there.first)) + texels_there.t + 0.5;
+#endif
     emit_terrain_vertex(vec3(ground.xy, (height - eye_offset.z) - eye_offset.w));
 }
