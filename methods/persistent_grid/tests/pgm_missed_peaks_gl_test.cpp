@@ -94,5 +94,26 @@ TEST(PgmMissedPeaks, a_close_peak_is_found_with_the_extension_alone) {
     }
 }
 
+// The first frame of scenarios/trade/high.toml, at the grid of the paper's figures 16 and 17: by
+// the angle of the wider step, as it was read before, the highest vertex stood at 2287 m.
+TEST(PgmMissedPeaks, mount_rainier_is_in_the_picture_at_200_x_800) {
+    const auto puget = puget_sound();
+    Flight flight(puget, "persistent_grid", "pgm", {{"grid", "800"}, {"aspect", "0.25"}});
+    Camera camera = camera_at({87000, 84000, 1300}, 97, -8, 0, 45);
+    camera.viewport = {640, 480};
+    camera.near_plane = 10;
+    const measure::CapturedSurface surface = flight.surface(camera);
+    glm::dvec3 summit(0);
+    for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+        const glm::dvec3 vertex = surface.origin + glm::dvec3(surface.vertices[i]);
+        if (vertex.z > summit.z) summit = vertex;
+    }
+    const TerrainInfo& info = puget->info();
+    const auto highest = std::ranges::max_element(puget->samples()) - puget->samples().begin();
+    const glm::dvec2 peak = info.position(int(highest / info.columns), int(highest % info.columns));
+    EXPECT_GT(summit.z, 0.85 * info.max_height);
+    EXPECT_LT(glm::length(glm::dvec2(summit) - peak), 2500) << "metres; rows are that far apart";
+}
+
 }  // namespace
 }  // namespace lodbench::test
