@@ -153,9 +153,50 @@ private:
     std::vector<float> north_;  ///< waits for the row below it
 };
 
-OpenFile open_unnamed(const std::filesystem::path& folder) {
-    return OpenFile(::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, S_IRUSR | S_IWUSR));
-}
+/// A file that gets its name when it is whole, so that nobody reads half of it, and that leaves
+/// nothing behind otherwise, not even when the process is killed where the file system knows files
+/// without a name.
+class UnfinishedFile {
+public:
+    /// False, with errno, where the folder cannot be written to.
+    explicit UnfinishedFile(std::filesystem::path name) : name_(std::move(name)) {
+        file_ = OpenFile(
+            ::open(name_.parent_path().c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, S_IRUSR | S_IWUSR));
+        if (file_) return;
+        std::string pattern = name_.string() + ".XXXXXX";
+        file_ = OpenFile(::mkostemp(pattern.data(), O_CLOEXEC));
+        if (file_) for_now_ = pattern;
+    }
+    ~UnfinishedFile() {
+        if (!for_now_.empty()) ::unlink(for_now_.c_str());
+    }
+    UnfinishedFile(const UnfinishedFile&) = delete;
+    UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+    explicit operator bool() const { return bool(file_); }
+    [[nodiscard]] int file() const { return file_.descriptor(); }
+    [[nodiscard]] OpenFile take() { return std::move(file_); }
+    /// In place of what has the name already. False where the system refuses: then it lives as long
+    /// as it is open.
+    bool keep() {
+        if (for_now_.empty()) {
+            const std::string itself = fmt::format("/proc/self/fd/{}", file());
+            const std::string link = fmt::format("{}.{}", name_.string(), getpid());
+            if (::linkat(AT_FDCWD, itself.c_str(), AT_FDCWD, link.c_str(), AT_SYMLINK_FOLLOW) !=
+                0) {
+                return false;
+            }
+            for_now_ = link;
+        }
+        if (::rename(for_now_.c_str(), name_.c_str()) != 0) return false;
+        for_now_.clear();
+        return true;
+    }
+
+private:
+    std::filesystem::path name_;
+    std::string for_now_;  ///< its name until then; empty: none
+    OpenFile file_;
+};
 
 }  // namespace
 
@@ -189,56 +230,34 @@ MeanPyramid::MeanPyramid(const Terrain& terrain, const std::vector<std::filesyst
     tile_count_ = pyramid.count() - std::size_t(pyramid.rows(0)) * std::size_t(pyramid.columns(0));
     const std::string name =
         fmt::format("pgm-means-{}-{}x{}", info_.checksum, info_.rows, info_.columns);
-    if (tile_count_ == 0) {  // nothing that would not fit into memory
-        read_small();
-        return;
-    }
-    if (!info_.checksum.empty()) {
-        for (const std::filesystem::path& folder : folders) {
-            if (open(folder / name)) {
-                read_small();
-                return;
-            }
-        }
-    }
+    // Without tiles there is nothing that would not fit into memory.
+    if (tile_count_ > 0 && !find(folders, name)) make_in(folders, name);
+    read_small();
+}
+
+bool MeanPyramid::find(const std::vector<std::filesystem::path>& folders, const std::string& name) {
+    if (info_.checksum.empty()) return false;
+    return std::ranges::any_of(
+        folders, [&](const std::filesystem::path& folder) { return open(folder / name); });
+}
+
+void MeanPyramid::make_in(std::vector<std::filesystem::path> folders, const std::string& name) {
+    const bool keep = !folders.empty() && !info_.checksum.empty();
+    if (folders.empty()) folders.push_back(std::filesystem::temp_directory_path());
     std::string tried;
     for (const std::filesystem::path& folder : folders) {
         std::error_code failed;
         std::filesystem::create_directories(folder, failed);
-        // Under a name of its own until it is whole, so that nobody reads half of it.
-        const std::filesystem::path unfinished = folder / fmt::format("{}.{}", name, getpid());
-        OpenFile file =
-            info_.checksum.empty()
-                ? open_unnamed(folder)
-                : OpenFile(::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC,
-                                  S_IRUSR | S_IWUSR));
-        if (!file) {
+        UnfinishedFile unfinished(folder / name);
+        if (!unfinished) {
             tried += fmt::format("{}{}: {}", tried.empty() ? "" : "; ", folder.string(),
                                  std::strerror(errno));
             continue;
         }
-        try {
-            make(std::move(file));
-        } catch (...) {
-            if (!info_.checksum.empty()) ::unlink(unfinished.c_str());
-            throw;
-        }
-        if (!info_.checksum.empty()) {
-            path_ = folder / name;
-            std::filesystem::rename(unfinished, path_);
-        }
-        read_small();
+        make(unfinished.file());
+        if (keep && unfinished.keep()) path_ = folder / name;
+        file_ = unfinished.take();
         return;
-    }
-    if (folders.empty()) {
-        const std::filesystem::path temporary = std::filesystem::temp_directory_path();
-        OpenFile file = open_unnamed(temporary);
-        tried = fmt::format("{}: {}", temporary.string(), std::strerror(errno));
-        if (file) {
-            make(std::move(file));
-            read_small();
-            return;
-        }
     }
     throw EnvironmentError(fmt::format(
         "the pyramid of means can be written nowhere ({}); set XDG_CACHE_HOME to a folder of yours",
@@ -292,17 +311,16 @@ bool MeanPyramid::is_whole() {
     return true;
 }
 
-void MeanPyramid::make(OpenFile file) {
-    file_ = std::move(file);
+void MeanPyramid::make(int descriptor) {
     checksums_.assign(tile_count_, 0);
     const TilePyramid pyramid = tiles();
     std::vector<LevelPass> passes;
     for (int level = 1; level < pyramid.levels(); ++level) {
         passes.emplace_back(
             level_size(info_, level), glm::ivec2(pyramid.columns(level), pyramid.rows(level)),
-            [this, level](int row, std::span<const float> heights) {
+            [this, level, descriptor](int row, std::span<const float> heights) {
                 const std::size_t first = place_of({level, row, 0});
-                write_at(file_.descriptor(), offset_of(first), std::as_bytes(heights));
+                write_at(descriptor, offset_of(first), std::as_bytes(heights));
                 for (std::size_t i = 0; i * kTileSampleCount < heights.size(); ++i) {
                     checksums_[first + i] =
                         checksum_of(heights.subspan(i * kTileSampleCount, kTileSampleCount));
@@ -327,8 +345,8 @@ void MeanPyramid::make(OpenFile file) {
         }
     }
     const Header header = header_of(info_, checksums_);
-    write_at(file_.descriptor(), 0, std::as_bytes(std::span(&header, 1)));
-    write_at(file_.descriptor(), sizeof header, std::as_bytes(std::span(checksums_)));
+    write_at(descriptor, 0, std::as_bytes(std::span(&header, 1)));
+    write_at(descriptor, sizeof header, std::as_bytes(std::span(checksums_)));
 }
 
 void MeanPyramid::read_small() {

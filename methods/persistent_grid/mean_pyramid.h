@@ -71,9 +71,11 @@ private:
     /// Tiles of level 1 and coarser come level upon level, each row by row.
     [[nodiscard]] std::size_t place_of(const TileId& tile) const;
     [[nodiscard]] std::uint64_t offset_of(std::size_t place) const;
+    bool find(const std::vector<std::filesystem::path>& folders, const std::string& name);
     bool open(const std::filesystem::path& path);
     [[nodiscard]] bool is_whole();
-    void make(OpenFile file);
+    void make_in(std::vector<std::filesystem::path> folders, const std::string& name);
+    void make(int descriptor);
     void read_small();
 
     const Terrain& terrain_;

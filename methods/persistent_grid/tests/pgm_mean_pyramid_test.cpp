@@ -101,7 +101,7 @@ TEST_F(CachedPyramid, is_found_again_and_the_only_file) {
     EXPECT_TRUE(pyramid.was_cached());
     EXPECT_EQ(pyramid.file(), file_);
     expect_means(pyramid, in_memory(*terrain_));
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing unfinished";
 }
 
 TEST_F(CachedPyramid, is_made_again_when_a_byte_has_changed) {
