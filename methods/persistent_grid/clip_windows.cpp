@@ -24,8 +24,8 @@ ClipWindows::ClipWindows(const MeanPyramid& pyramid, const ClipOptions& options)
       options_(options),
       shelf_(pyramid, options.loader_threads) {
     const int levels = pyramid.level_count();
-    const int columns = int(std::ceil(std::sqrt(double(levels))));
-    texture_size_ = options.texels * glm::ivec2(columns, (levels + columns - 1) / columns);
+    texture_size_ = texture_size(levels, options.texels);
+    const int columns = texture_size_.x / options.texels;
     for (int level = 0; level < levels; ++level) {
         windows_.emplace_back(options.texels,
                               options.texels * glm::ivec2(level % columns, level / columns));

@@ -3,6 +3,7 @@
 // texture (Livny et al. 2006, section 4, figures 12, 13 and 15). What a move brings in is written,
 // L by L: an F over the texture.
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -45,6 +46,11 @@ public:
     /// The pyramid outlives the windows.
     ClipWindows(const MeanPyramid& pyramid, const ClipOptions& options);
 
+    /// Columns and rows of the texture for so many windows: as square as whole windows make it.
+    [[nodiscard]] static glm::ivec2 texture_size(int levels, int texels) {
+        const int columns = int(std::ceil(std::sqrt(double(levels))));
+        return texels * glm::ivec2(columns, (levels + columns - 1) / columns);
+    }
     [[nodiscard]] int level_count() const { return int(windows_.size()); }
     [[nodiscard]] glm::ivec2 texture_size() const { return texture_size_; }
     [[nodiscard]] glm::ivec2 corner(int level) const;

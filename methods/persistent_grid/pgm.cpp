@@ -160,9 +160,15 @@ public:
 
     void prepare(const Terrain& terrain, gl::Device& device) override {
         info_ = terrain.info();
+        if (level_count(info_) > int(kMaximumLevels)) {
+            throw InputError(fmt::format(
+                "pgm has room for {} levels, {} x {} samples have {}; use a smaller terrain",
+                kMaximumLevels, info_.columns, info_.rows, level_count(info_)));
+        }
         if (in_windows()) {
             require_plain();
-            require_texture(device, {windows_.texels, windows_.texels}, "lower window");
+            require_texture(device, ClipWindows::texture_size(level_count(info_), windows_.texels),
+                            "lower window");
             heights_ = std::make_unique<ClipAtlas>(terrain, windows_, cache_);
         } else {
             require_texture(device, whole_layout(info_).size, "choose storage = \"windows\"");
