@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <utility>
@@ -172,75 +171,7 @@ private:
     std::vector<float> north_;  ///< waits for the row below it
 };
 
-/// A file that gets its name when it is whole, so that nobody reads half of it, and that leaves
-/// nothing behind otherwise, not even when the process is killed where the file system knows files
-/// without a name.
-class UnfinishedFile {
-public:
-    /// False, with errno, where the folder cannot be written to.
-    explicit UnfinishedFile(std::filesystem::path name) : name_(std::move(name)) {
-        file_ = OpenFile(
-            ::open(name_.parent_path().c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, S_IRUSR | S_IWUSR));
-        if (file_) return;
-        std::string pattern = name_.string() + ".XXXXXX";
-        file_ = OpenFile(::mkostemp(pattern.data(), O_CLOEXEC));
-        if (file_) for_now_ = pattern;
-    }
-    ~UnfinishedFile() {
-        if (!for_now_.empty()) ::unlink(for_now_.c_str());
-    }
-    UnfinishedFile(const UnfinishedFile&) = delete;
-    UnfinishedFile& operator=(const UnfinishedFile&) = delete;
-    explicit operator bool() const { return bool(file_); }
-    [[nodiscard]] int file() const { return file_.descriptor(); }
-    [[nodiscard]] OpenFile take() { return std::move(file_); }
-    /// In place of what has the name already. False where the system refuses: then it lives as long
-    /// as it is open.
-    bool keep() {
-        if (for_now_.empty()) {
-            const std::string itself = fmt::format("/proc/self/fd/{}", file());
-            const std::string link = fmt::format("{}.{}", name_.string(), getpid());
-            if (::linkat(AT_FDCWD, itself.c_str(), AT_FDCWD, link.c_str(), AT_SYMLINK_FOLLOW) !=
-                0) {
-                return false;
-            }
-            for_now_ = link;
-        }
-        if (::rename(for_now_.c_str(), name_.c_str()) != 0) return false;
-        for_now_.clear();
-        return true;
-    }
-
-private:
-    std::filesystem::path name_;
-    std::string for_now_;  ///< its name until then; empty: none
-    OpenFile file_;
-};
-
 }  // namespace
-
-OpenFile::~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-}
-OpenFile::OpenFile(OpenFile&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-OpenFile& OpenFile::operator=(OpenFile&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-}
-
-std::vector<std::filesystem::path> cache_folders() {
-    std::vector<std::filesystem::path> folders;
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache == '/') {
-        folders.push_back(std::filesystem::path(cache) / "lodbench");
-    }
-    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
-        folders.push_back(std::filesystem::path(home) / ".cache" / "lodbench");
-    }
-    std::error_code failed;
-    const std::filesystem::path temporary = std::filesystem::temp_directory_path(failed);
-    if (!failed) folders.push_back(temporary / fmt::format("lodbench-cache-{}", getuid()));
-    return folders;
-}
 
 MeanPyramid::MeanPyramid(const Terrain& terrain, const std::vector<std::filesystem::path>& folders)
     : terrain_(terrain) {
@@ -273,7 +204,7 @@ void MeanPyramid::make_in(std::vector<std::filesystem::path> folders, const std:
                                  std::strerror(errno));
             continue;
         }
-        make(unfinished.file());
+        make(unfinished.descriptor());
         if (keep && unfinished.keep()) path_ = folder / name;
         file_ = unfinished.take();
         return;

@@ -5,34 +5,15 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "api/terrain.h"
+#include "persistent_grid/cache_file.h"
 #include "persistent_grid/pyramid.h"
 
 namespace lodbench::persistent_grid {
-
-/// An open file, closed at the end of its life.
-class OpenFile {
-public:
-    OpenFile() = default;
-    explicit OpenFile(int descriptor) : descriptor_(descriptor) {}
-    ~OpenFile();
-    OpenFile(OpenFile&& other) noexcept;
-    OpenFile& operator=(OpenFile&& other) noexcept;
-    [[nodiscard]] int descriptor() const { return descriptor_; }
-    explicit operator bool() const { return descriptor_ >= 0; }
-
-private:
-    int descriptor_ = -1;
-};
-
-/// Folders for what may be made again, the preferred one first: $XDG_CACHE_HOME/lodbench,
-/// $HOME/.cache/lodbench, and one of this user's in the folder for temporary files.
-[[nodiscard]] std::vector<std::filesystem::path> cache_folders();
 
 /// A terrain whose coarser tiles hold means instead of every 2^l-th sample. Texel k of level l is
 /// the mean that `half_resolution` gives, to the bit; tile (row, column) of level l begins at texel

@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "persistent_grid/mean_pyramid.cpp"  // the room is a plugin, not a library
+// The room is a plugin, not a library.
+#include "persistent_grid/cache_file.cpp"
+#include "persistent_grid/mean_pyramid.cpp"
 #include "support/fake_terrain.h"
 #include "support/method_fixture.h"
 #include "support/run_lodbench.h"
