@@ -8,16 +8,26 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "api/camera.h"
 #include "api/terrain.h"
 
 namespace lodbench::persistent_grid {
 
-/// The grid's resolution: vertices along each axis, both at least 2.
+/// The grid's resolution: vertices along each axis, both at least 2; and how its rows lie.
 struct GridSize {
     int columns = 2;
     int rows = 2;
+    /// Absent from the paper, which leaves the distribution open: row k of n lies at (k / (n -
+    /// 1))^2 of the way down, closer to its neighbours the nearer it is to the horizon.
+    bool denser_at_horizon = false;
+
+    /// Of the way from the horizon to the bottom.
+    [[nodiscard]] double way_down(int row) const {
+        const double t = double(row) / (rows - 1);
+        return denser_at_horizon ? t * t : t;
+    }
 };
 
 /// The rays of the grid's vertices and the plane that they meet. The ray of vertex (column i, row
@@ -29,17 +39,22 @@ struct Mapping {
     glm::dvec3 down{0.0};
     double eye_height = 1;    ///< of the viewpoint above the base plane, > 0
     double far_distance = 1;  ///< horizontal; no place of the terrain is farther from the viewpoint
-    double ray_angle = 0;     ///< alpha of (3): radians between adjacent rays
+    double ray_angle = 0;     ///< alpha of (3): radians between the rays of adjacent rows
     double pitch = 0;         ///< A_aux of (2): radians below the horizon
     bool restricted = false;  ///< the auxiliary camera differs from the main one
 
     [[nodiscard]] glm::dvec3 ray(double i, double j) const { return first + i * across + j * down; }
 };
 
-/// The auxiliary camera. `base` is the height of the base plane, `margin` the part by which the
-/// grid extends beyond the picture (0.05: 5 % wider and higher), `grid` its resolution.
+/// How far the grid reaches beyond the picture.
+struct Coverage {
+    double margin = 0;   ///< part of the picture, on each axis (0.05: 5 % wider and higher)
+    bool extend = true;  ///< the vertical field of view is 90 degrees at least
+};
+
+/// The auxiliary camera. `base` is the height of the base plane.
 ///
-/// (2)  A_aux = max(A_main, FOV / 2 + epsilon), with the extended FOV of at least 90 degrees.
+/// (2)  A_aux = max(A_main, FOV / 2 + epsilon), with the FOV extended to 90 degrees where asked.
 ///
 /// What the paper leaves open:
 /// - The field of view is extended whatever the pitch, so that the mapping does not jump as the
@@ -53,7 +68,7 @@ struct Mapping {
 /// - epsilon is 1e-4, or less where the terrain reaches farther than that ray would.
 /// - On or under the plane the viewpoint is taken to be one near-plane distance above it.
 inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, double base,
-                            double margin, const GridSize& grid) {
+                            const Coverage& coverage, const GridSize& grid) {
     constexpr double kEpsilon = 1e-4;
     // A rolled frustum this close to the horizon is handled by the upright camera, whose rays'
     // slopes are sums of one sign in the shader and so keep their sign in float.
@@ -66,8 +81,9 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
     mapping.far_distance = glm::length(to_corner) + std::max(terrain.spacing.x, terrain.spacing.y);
 
     const glm::dvec3 forward = camera.forward(), right = camera.right(), up = camera.up();
-    const glm::dvec2 picture = camera.half_tangents() * (1 + margin);
-    const double smallest_vertical = 1 + margin;  // tan 45 degrees and the margin
+    const glm::dvec2 picture = camera.half_tangents() * (1 + coverage.margin);
+    // tan 45 degrees and the margin.
+    const double smallest_vertical = coverage.extend ? 1 + coverage.margin : 0;
     glm::dvec2 tangents(picture.x, std::max(picture.y, smallest_vertical));
     const double highest_slope =
         forward.z + tangents.x * std::abs(right.z) + tangents.y * std::abs(up.z);
@@ -76,8 +92,7 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
 
     // The second condition matters to a rolled camera alone, whose picture's vertical is not the
     // world's.
-    if (highest_slope <= -kHorizonGuard * corner_length &&
-        main_pitch >= std::atan(smallest_vertical)) {
+    if (highest_slope <= -kHorizonGuard * corner_length && main_pitch >= std::atan(tangents.y)) {
         mapping.pitch = main_pitch;
         mapping.first = forward - tangents.x * right + tangents.y * up;
         mapping.across = 2 * tangents.x * right;
@@ -114,10 +129,9 @@ inline Mapping make_mapping(const Camera& camera, const TerrainInfo& terrain, do
         mapping.across = 2 * tangents.x * level_right;
         mapping.down = -2 * tangents.y * aux_up;
     }
-    // The farthest neighbour decides the level of detail: the wider of the two steps.
+    // Figure 9 has ray beta and the adjacent one, beta + alpha: radial, hence the rows' step alone.
     const double steepest = 1.5;  // radians: keeps cos(alpha) positive on the coarsest grids
-    mapping.ray_angle = std::min(steepest, std::max(2 * std::atan(tangents.x) / (grid.columns - 1),
-                                                    2 * std::atan(tangents.y) / (grid.rows - 1)));
+    mapping.ray_angle = std::min(steepest, 2 * std::atan(tangents.y) / (grid.rows - 1));
     return mapping;
 }
 
@@ -131,6 +145,32 @@ inline glm::dvec2 ground_point(const Mapping& mapping, const glm::dvec3& ray) {
     if (distance <= mapping.far_distance) return horizontal * (mapping.eye_height / -ray.z);
     const double compressed = mapping.far_distance * (2 - mapping.far_distance / distance);
     return horizontal * (compressed / glm::length(horizontal));
+}
+
+/// r of section 3.4 by its definition: the distance, on the base plane, between vertex (column,
+/// row) and the farthest of the four that are next to it in its row and its column.
+inline double farthest_neighbour(const Mapping& mapping, const GridSize& grid, int column,
+                                 int row) {
+    const auto ground = [&](int i, int j) {
+        return ground_point(mapping, mapping.ray(double(i) / (grid.columns - 1), grid.way_down(j)));
+    };
+    const glm::dvec2 here = ground(column, row);
+    double farthest = 0;
+    for (const glm::ivec2 step : {glm::ivec2(0, -1), {-1, 0}, {1, 0}, {0, 1}}) {
+        const int i = column + step.x, j = row + step.y;
+        if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows) continue;
+        farthest = std::max(farthest, glm::length(ground(i, j) - here));
+    }
+    return farthest;
+}
+
+/// r of (3), which stands for it "for efficiency": q is the distance to the viewpoint on the plane.
+/// Infinite where the next row's ray misses the plane.
+inline double spacing_by_formula(const Mapping& mapping, double q) {
+    const double h = mapping.eye_height;
+    const double denominator = h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle);
+    if (denominator <= 0) return std::numeric_limits<double>::infinity();
+    return (q * q + h * h) * std::sin(mapping.ray_angle) / denominator;
 }
 
 }  // namespace lodbench::persistent_grid

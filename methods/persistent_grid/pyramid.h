@@ -54,25 +54,39 @@ inline std::vector<Level> make_pyramid(Level finest) {
     return levels;
 }
 
-/// Where each level from 1 up lies in the texture that holds them together: level 1 in the
-/// north-west corner, all others below each other at its east side. (Mipmaps of OpenGL round sizes
-/// down.)
+/// Columns (x) and rows (y) of a level of the pyramid over this grid.
+inline glm::ivec2 level_size(const TerrainInfo& info, int level) {
+    return (glm::ivec2(info.columns, info.rows) - 1) / (1 << level) + 1;
+}
+
+/// Levels down to one texel.
+inline int level_count(const TerrainInfo& info) {
+    int levels = 1;
+    while (level_size(info, levels - 1) != glm::ivec2(1)) ++levels;
+    return levels;
+}
+
+/// Where each level lies in the texture that holds them together.
 struct AtlasLayout {
-    std::vector<glm::ivec2>
-        origins;  ///< one a level; of level 0, which has its own texture, (0, 0)
+    std::vector<glm::ivec2> origins;  ///< one a level
     glm::ivec2 size{1};
 };
-inline AtlasLayout atlas_layout(const std::vector<Level>& levels) {
+
+/// Of all levels whole: level 0 in the north-west corner, level 1 below it, all others below each
+/// other at the east side of level 1. (Mipmaps of OpenGL round sizes down.)
+inline AtlasLayout whole_layout(const TerrainInfo& info) {
     AtlasLayout layout;
-    layout.origins.assign(levels.size(), glm::ivec2(0));
-    int south = 0;
-    for (std::size_t i = 1; i < levels.size(); ++i) {
-        const glm::ivec2 level_size(levels[i].columns, levels[i].rows);
-        if (i > 1) {
-            layout.origins[i] = {levels[1].columns, south};
-            south += level_size.y;
+    int south = info.rows;
+    for (int level = 0; level < level_count(info); ++level) {
+        const glm::ivec2 size = level_size(info, level);
+        glm::ivec2 origin(0);
+        if (level == 1) origin = {0, info.rows};
+        if (level > 1) {
+            origin = {level_size(info, 1).x, south};
+            south += size.y;
         }
-        layout.size = glm::max(layout.size, layout.origins[i] + level_size);
+        layout.origins.push_back(origin);
+        layout.size = glm::max(layout.size, origin + size);
     }
     return layout;
 }
@@ -80,22 +94,19 @@ inline AtlasLayout atlas_layout(const std::vector<Level>& levels) {
 /// Lowest heights of the surroundings, for the option base = "minimum-near" (absent from the
 /// paper).
 ///
-/// The terrain is divided into tiles of 64 x 64 samples; a tile's node, at its centre, holds the
-/// lowest height of the tile and its eight neighbours, and between nodes the value is bilinear. So
-/// the plane moves continuously with the viewpoint, and never lies above the ground of the
-/// viewpoint's own tile.
+/// Each of the terrain's tiles of 64 x 64 cells has a node at its centre that holds the lowest
+/// height of the tile and its eight neighbours, and between nodes the value is bilinear. So the
+/// plane moves continuously with the viewpoint, and never lies above the ground of the viewpoint's
+/// own tile.
 class LocalMinimum {
 public:
-    static constexpr int kTileSamples = 64;
-
     LocalMinimum() = default;
-    explicit LocalMinimum(const Level& finest)
-        : columns_((finest.columns + kTileSamples - 1) / kTileSamples),
-          rows_((finest.rows + kTileSamples - 1) / kTileSamples) {
-        std::vector<float> lowest(std::size_t(columns_) * std::size_t(rows_), finest.at(0, 0));
+    explicit LocalMinimum(const Terrain& terrain)
+        : columns_(terrain.tiles().columns(0)), rows_(terrain.tiles().rows(0)) {
+        std::vector<float> lowest;
         for (int row = 0; row < rows_; ++row) {
             for (int column = 0; column < columns_; ++column) {
-                lowest[index(row, column)] = lowest_of_tile(finest, row, column);
+                lowest.push_back(terrain.tile_summary({0, row, column}).min_height);
             }
         }
         nodes_ = lowest;
@@ -115,8 +126,7 @@ public:
     /// At a place in units of samples (x: column, y: row); outside the grid that of its edge.
     [[nodiscard]] double at(const glm::dvec2& place) const {
         const glm::dvec2 last(columns_ - 1, rows_ - 1);
-        const glm::dvec2 node =
-            glm::clamp((place + 0.5) / double(kTileSamples) - 0.5, glm::dvec2(0), last);
+        const glm::dvec2 node = glm::clamp(place / double(kTileCells) - 0.5, glm::dvec2(0), last);
         const int column = int(node.x), row = int(node.y);
         const int east = std::min(column + 1, columns_ - 1), south = std::min(row + 1, rows_ - 1);
         const glm::dvec2 t = node - glm::dvec2(column, row);
@@ -129,16 +139,6 @@ private:
         return std::size_t(row) * std::size_t(columns_) + std::size_t(column);
     }
     [[nodiscard]] double height(int row, int column) const { return nodes_[index(row, column)]; }
-    static float lowest_of_tile(const Level& finest, int tile_row, int tile_column) {
-        const int row = tile_row * kTileSamples, column = tile_column * kTileSamples;
-        float lowest = finest.at(row, column);
-        for (int r = row; r < std::min(row + kTileSamples, finest.rows); ++r) {
-            for (int c = column; c < std::min(column + kTileSamples, finest.columns); ++c) {
-                lowest = std::min(lowest, finest.at(r, c));
-            }
-        }
-        return lowest;
-    }
 
     int columns_ = 0;
     int rows_ = 0;

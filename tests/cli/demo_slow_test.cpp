@@ -61,12 +61,10 @@ TEST_F(Demo, each_kept_value_shows_the_error_that_it_was_kept_for_and_every_meth
                   "measured) "));
 }
 
-/// The values at the end of the knob's range, towards the error that cannot be reached.
+/// The value at the end of the knob's range, towards the error that cannot be reached.
 TEST_F(Demo, what_is_said_to_be_out_of_reach_is) {
-    const std::map<std::string, double> errors =
-        this->errors({"--frames", "1", "--method", "pgm", "--set", "pgm.grid=2048", "--method",
-                      "static-patches", "--set", "static-patches.tau=1000"});
-    EXPECT_GT(errors.at("pgm"), equal_.error_px * (1 + equal_.tolerance));
+    const std::map<std::string, double> errors = this->errors(
+        {"--frames", "1", "--method", "static-patches", "--set", "static-patches.tau=1000"});
     EXPECT_LT(errors.at("static-patches"), equal_.error_px * (1 - equal_.tolerance));
 }
 

@@ -35,9 +35,10 @@ TEST_F(MeshTest, pgm_sends_whole_finite_grids_that_share_vertices_from_every_cam
     const std::string count = fmt::format("element face {}\n", 2 * 59 * 79);
     const std::string shares = fmt::format(" --shares-vertices {}", 2 * (59 + 79));
     for (std::size_t frame = 0; frame < std::size(kNames); ++frame) {
-        const Outcome made = lodbench(
-            fmt::format("mesh pgm --before-clipping --set grid=60 --frame {} --scenario {} -o {}",
-                        frame, file("cameras.toml"), file("m.ply")));
+        const Outcome made =
+            lodbench(fmt::format("mesh pgm --before-clipping --set grid=60 --set aspect=1.3333 "
+                                 "--frame {} --scenario {} -o {}",
+                                 frame, file("cameras.toml"), file("m.ply")));
         ASSERT_EQ(made.status, 0) << kNames[frame] << ": " << made.output;
         EXPECT_NE(read_bytes(file("m.ply")).find(count), std::string::npos)
             << kNames[frame] << ": " << made.output;

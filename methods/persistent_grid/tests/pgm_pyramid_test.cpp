@@ -5,6 +5,7 @@
 #include <random>
 
 #include "persistent_grid/pyramid.h"
+#include "terrain/height_field.h"
 
 namespace lodbench::persistent_grid {
 namespace {
@@ -63,42 +64,69 @@ TEST(PgmPyramid, texels_stand_half_a_texel_off_the_samples) {
     }
 }
 
-TEST(PgmPyramid, atlas_keeps_levels_apart) {
+TerrainInfo info_of(int rows, int columns) {
+    TerrainInfo info;
+    info.rows = rows;
+    info.columns = columns;
+    return info;
+}
+
+TEST(PgmPyramid, sizes_are_those_of_the_levels) {
+    for (const auto& [rows, columns] : {std::pair{2, 2}, {2, 1025}, {1026, 1023}, {37, 4}}) {
+        const auto levels = make_pyramid(make_level(rows, columns, [](int, int) { return 5; }));
+        const TerrainInfo info = info_of(rows, columns);
+        ASSERT_EQ(level_count(info), int(levels.size()));
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+            EXPECT_EQ(level_size(info, int(i)), glm::ivec2(levels[i].columns, levels[i].rows));
+        }
+    }
+}
+
+TEST(PgmPyramid, whole_levels_lie_apart) {
     for (const auto& [rows, columns] :
          {std::pair{1025, 1025}, {2, 2}, {3, 1000}, {1000, 3}, {513, 100}}) {
-        const auto levels = make_pyramid(make_level(rows, columns, [](int, int) { return 0; }));
-        const AtlasLayout layout = atlas_layout(levels);
-        std::vector<int> owner(std::size_t(layout.size.x) * std::size_t(layout.size.y), 0);
-        for (std::size_t i = 1; i < levels.size(); ++i) {
-            for (int y = 0; y < levels[i].rows; ++y) {
-                for (int x = 0; x < levels[i].columns; ++x) {
-                    const glm::ivec2 texel = layout.origins[i] + glm::ivec2(x, y);
+        const TerrainInfo info = info_of(rows, columns);
+        const AtlasLayout layout = whole_layout(info);
+        ASSERT_EQ(int(layout.origins.size()), level_count(info));
+        std::vector<int> owner(std::size_t(layout.size.x) * std::size_t(layout.size.y), -1);
+        for (int level = 0; level < level_count(info); ++level) {
+            const glm::ivec2 size = level_size(info, level);
+            for (int y = 0; y < size.y; ++y) {
+                for (int x = 0; x < size.x; ++x) {
+                    const glm::ivec2 texel = layout.origins[std::size_t(level)] + glm::ivec2(x, y);
                     ASSERT_LT(texel.x, layout.size.x);
                     ASSERT_LT(texel.y, layout.size.y);
                     int& cell = owner[std::size_t(texel.y) * std::size_t(layout.size.x) +
                                       std::size_t(texel.x)];
-                    ASSERT_EQ(cell, 0) << "levels " << cell << " and " << i;
-                    cell = int(i);
+                    ASSERT_EQ(cell, -1) << "levels " << cell << " and " << level;
+                    cell = level;
                 }
             }
         }
     }
 }
 
+std::shared_ptr<const terrain::HeightField> make_terrain(int rows, int columns, auto height) {
+    Level level = make_level(rows, columns, height);
+    TerrainInfo info = info_of(rows, columns);
+    info.name = "made up";
+    return std::make_shared<terrain::HeightField>(info, std::move(level.heights));
+}
+
 TEST(PgmLocalMinimum, never_lies_above_the_ground_of_its_own_tile_and_moves_without_jumps) {
     std::mt19937 random(3);
-    const Level level = make_level(300, 500, [&](int, int) {
+    const auto terrain = make_terrain(300, 500, [&](int, int) {
         return std::uniform_real_distribution<double>(0, 1000)(random);
     });
-    const LocalMinimum minimum(level);
+    const LocalMinimum minimum(*terrain);
     double previous = minimum.at({0, 150});
     for (double column = 0; column < 499; column += 0.125) {
         const double here = minimum.at({column, 150});
-        const int tile = int(column) / 64;
+        const int tile = int(column) / kTileCells;
         double lowest = 1e9;
-        for (int r = 128; r < 192; ++r) {
-            for (int c = tile * 64; c < std::min(tile * 64 + 64, 500); ++c) {
-                lowest = std::min(lowest, double(level.at(r, c)));
+        for (int r = 128; r <= 192; ++r) {
+            for (int c = tile * kTileCells; c < std::min((tile + 1) * kTileCells + 1, 500); ++c) {
+                lowest = std::min(lowest, double(terrain->samples()[std::size_t(r * 500 + c)]));
             }
         }
         ASSERT_LE(here, lowest + 1e-9);
@@ -109,13 +137,14 @@ TEST(PgmLocalMinimum, never_lies_above_the_ground_of_its_own_tile_and_moves_with
 }
 
 TEST(PgmLocalMinimum, is_that_of_the_edge_outside_the_terrain) {
-    const Level level =
-        make_level(65, 65, [](int row, int column) { return row == 64 && column == 64 ? 1 : 9; });
-    const LocalMinimum minimum(level);
+    const auto corner = make_terrain(
+        129, 129, [](int row, int column) { return row == 128 && column == 128 ? 1 : 9; });
+    const LocalMinimum minimum(*corner);
     EXPECT_EQ(minimum.at({-1e9, 1e9}), 1);
     EXPECT_EQ(minimum.at({-1e9, -1e9}),
               1);  // two tiles an axis: every tile is a neighbour of the last
-    EXPECT_EQ(LocalMinimum(make_level(500, 500, [](int r, int) { return r; })).at({1e7, 1e7}), 384);
+    const auto slope = make_terrain(500, 500, [](int row, int) { return row; });
+    EXPECT_EQ(LocalMinimum(*slope).at({1e7, 1e7}), 384);  // the last tile but one begins there
 }
 
 }  // namespace

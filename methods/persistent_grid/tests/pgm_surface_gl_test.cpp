@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 #include "persistent_grid/mapping.h"
@@ -97,15 +98,14 @@ TEST_F(PgmSurface, is_finite_and_has_the_same_number_of_triangles_for_every_came
     }
 }
 
-TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
-    for (const auto& [name, camera] : cameras(terrain_->info())) {
-        const Mapping mapping =
-            persistent_grid::make_mapping(camera, terrain_->info(), 0, kMargin, kGrid);
-        const auto vertices = grid_vertices(flight_.surface(camera));
+void expect_mapped(Flight& flight, const TerrainInfo& info, const GridSize& grid) {
+    for (const auto& [name, camera] : cameras(info)) {
+        const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, {kMargin}, grid);
+        const auto vertices = grid_vertices(flight.surface(camera));
         for (int row = 0; row < kGrid.rows; ++row) {
             for (int column = 0; column < kGrid.columns; ++column) {
-                const glm::dvec3 ray = mapping.ray(double(column) / (kGrid.columns - 1),
-                                                   double(row) / (kGrid.rows - 1));
+                const glm::dvec3 ray =
+                    mapping.ray(double(column) / (kGrid.columns - 1), grid.way_down(row));
                 const glm::dvec2 expected = persistent_grid::ground_point(mapping, ray);
                 const glm::dvec2 found(vertices[std::size_t(row * kGrid.columns + column)]);
                 // A ray's components carry a few roundings of the sum they come from; the slope
@@ -123,6 +123,18 @@ TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
     }
 }
 
+TEST_F(PgmSurface, lies_where_the_mapping_in_double_puts_it) {
+    expect_mapped(flight_, terrain_->info(), kGrid);
+}
+
+TEST(PgmRows, denser_at_the_horizon_lie_where_the_mapping_in_double_puts_them) {
+    const auto terrain = hills(201, 166);
+    auto settings = kSettings;
+    settings.emplace_back("rows", "horizon");
+    Flight flight(terrain, "persistent_grid", "pgm", settings);
+    expect_mapped(flight, terrain->info(), {kGrid.columns, kGrid.rows, true});
+}
+
 /// Bilinear height of a level at a place in samples, as the README defines it.
 double level_height(const Level& level, int l, const glm::dvec2& place) {
     const glm::dvec2 texel = (place + 0.5) / double(1 << l) - 0.5;
@@ -135,54 +147,131 @@ double level_height(const Level& level, int l, const glm::dvec2& place) {
                     glm::mix(at(corner.x, corner.y + 1), at(corner.x + 1, corner.y + 1), t.x), t.y);
 }
 
-TEST(PgmHeights, are_those_of_equations_3_and_4) {
+/// The texel nearest to a place in samples.
+double nearest_height(const Level& level, int l, const glm::dvec2& place) {
+    const glm::dvec2 texel = glm::floor((place + 0.5) / double(1 << l));
+    return level.at(int(std::clamp(texel.y, 0.0, level.rows - 1.0)),
+                    int(std::clamp(texel.x, 0.0, level.columns - 1.0)));
+}
+
+/// A setting of level, spacing, interpolation and finest_only.
+struct Sampling {
+    const char* level;
+    const char* spacing;
+    const char* interpolation;
+    bool finest_only = false;
+};
+void PrintTo(const Sampling& sampling, std::ostream* stream) {
+    *stream << sampling.level << ", " << sampling.spacing << ", " << sampling.interpolation
+            << (sampling.finest_only ? ", finest only" : "");
+}
+
+class PgmHeights : public ::testing::TestWithParam<Sampling> {
+protected:
+    static constexpr int kWindow = 64;
+
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings() const {
+        auto settings = kSettings;
+        settings.emplace_back("level", GetParam().level);
+        settings.emplace_back("spacing", GetParam().spacing);
+        settings.emplace_back("interpolation", GetParam().interpolation);
+        settings.emplace_back("finest_only", GetParam().finest_only ? "true" : "false");
+        settings.emplace_back("window", std::to_string(kWindow));
+        return settings;
+    }
+    /// Level and weight of the parent as one number, 2.25: a quarter of level 3 in level 2. And how
+    /// far float rounding may move it.
+    struct Detail {
+        double level = 0, tolerance = 0;
+    };
+    [[nodiscard]] Detail detail(const Mapping& mapping, int column, int row, double q) const {
+        if (GetParam().finest_only) return {0, 0};
+        const double h = mapping.eye_height;
+        double ratio = 0, relative = 1e-5;
+        if (GetParam().level == std::string("distance")) {
+            ratio = 2 * q / (kWindow / 2 * 10.0);  // the shorter side of a sample; begins at a half
+        } else if (GetParam().spacing == std::string("formula")) {
+            ratio = persistent_grid::spacing_by_formula(mapping, q) / 12.5;  // the longer side
+            // Where the next ray barely meets the plane, the rounding of q is magnified.
+            relative +=
+                1e-6 * (h + q) /
+                std::max(1e-6, h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle));
+        } else {
+            const double r = persistent_grid::farthest_neighbour(mapping, kGrid, column, row);
+            ratio = r / 12.5;
+            // A difference of two places: rounding of their distances, in parts of it. The slope of
+            // a ray that was not restricted may have cancelled.
+            relative += (mapping.restricted ? 3e-6 : 1e-4) * (h + q + r) / r;
+        }
+        if (ratio <= 1) return {0, relative};
+        ratio = std::min(ratio, 1e9);
+        const double level = std::floor(std::log2(ratio));
+        return {level + ratio / std::exp2(level) - 1, 2 * relative};
+    }
+};
+
+TEST_P(PgmHeights, are_those_of_section_3_4) {
     const auto terrain = hills(201, 166);
     const TerrainInfo& info = terrain->info();
     Level finest{info.columns, info.rows, {terrain->samples().begin(), terrain->samples().end()}};
     const auto levels = persistent_grid::make_pyramid(finest);
-    for (const bool parent : {true, false}) {
-        auto settings = kSettings;
-        settings.emplace_back("parent", parent ? "true" : "false");
-        Flight flight(terrain, "persistent_grid", "pgm", settings);
-        std::map<int, int> levels_seen;
-        for (const auto& [name, camera] : cameras(info)) {
-            const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, kMargin, kGrid);
-            const auto surface = flight.surface(camera);
-            for (const glm::vec3& vertex : grid_vertices(surface)) {
+    const bool parent = GetParam().interpolation == std::string("parent");
+    const bool nearest = GetParam().interpolation == std::string("nearest");
+    Flight flight(terrain, "persistent_grid", "pgm", settings());
+    std::map<int, int> levels_seen;
+    int compared = 0, passed_over = 0;
+    for (const auto& [name, camera] : cameras(info)) {
+        const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, {kMargin}, kGrid);
+        const auto surface = flight.surface(camera);
+        const auto vertices = grid_vertices(surface);
+        for (int row = 0; row < kGrid.rows; ++row) {
+            for (int column = 0; column < kGrid.columns; ++column) {
+                const glm::vec3 vertex = vertices[std::size_t(row * kGrid.columns + column)];
                 const glm::dvec3 world = surface.origin + glm::dvec3(vertex);
-                const double q = glm::length(glm::dvec2(vertex)), h = mapping.eye_height;
+                const double q = glm::length(glm::dvec2(vertex));
                 if (q > mapping.far_distance * 0.999) continue;
-                const double denominator =
-                    h * std::cos(mapping.ray_angle) - q * std::sin(mapping.ray_angle);
-                const double r = denominator > 0
-                                     ? (q * q + h * h) * std::sin(mapping.ray_angle) / denominator
-                                     : 1e9;
-                const double texels = r / 12.5;  // the longer side of a sample
                 const int last = int(levels.size()) - 1;
-                const int l = std::clamp(int(std::floor(std::log2(texels))), 0, last);
-                // At a change of level without the parent either of the two is right.
-                const double fraction = texels / (1 << l);
-                if (!parent && (fraction < 1.001 || fraction > 1.999)) continue;
+                const Detail wanted = detail(mapping, column, row, q);
+                const double exact = std::min(wanted.level, double(last));
+                const int l = int(exact);
                 const glm::dvec2 place((world.x - info.origin.x) / info.spacing.x,
                                        info.rows - 1 - (world.y - info.origin.y) / info.spacing.y);
-                double expected = level_height(levels[std::size_t(l)], l, place);
+                // Where a level or a texel changes without blending, either of the two is right.
+                const double edge = exact - l;
+                const glm::dvec2 within = glm::fract((place + 0.5) / std::exp2(l));
+                const glm::dvec2 to_edge = glm::min(within, 1.0 - within);
+                const bool undecided = (!parent && std::min(edge, 1 - edge) < wanted.tolerance &&
+                                        exact < last && exact > 0) ||
+                                       (nearest && std::min(to_edge.x, to_edge.y) < 1e-3);
+                passed_over += undecided ? 1 : 0;
+                if (undecided) continue;
+                const auto height = nearest ? nearest_height : level_height;
+                double expected = height(levels[std::size_t(l)], l, place);
                 if (parent && l < last) {
-                    const double weight = std::clamp(fraction - 1, 0.0, 1.0);
-                    expected = glm::mix(
-                        expected, level_height(levels[std::size_t(l + 1)], l + 1, place), weight);
+                    expected =
+                        glm::mix(expected, height(levels[std::size_t(l + 1)], l + 1, place), edge);
                 }
                 ++levels_seen[l];
-                // Float weights and heights of 160 m: 1e-5 m each; where the next ray barely meets
-                // the plane, the rounding of q in (3) is magnified, on hills of at most 120 m
-                // between levels.
-                const double magnified =
-                    denominator > 0 ? 1e-6 * (h + q) / denominator * fraction * 120 : 0;
-                ASSERT_NEAR(world.z, expected, 2e-3 + magnified) << name << ", level " << l;
+                ++compared;
+                // Float weights and heights of 160 m: 1e-5 m each; levels differ by at most 120 m.
+                ASSERT_NEAR(world.z, expected, 2e-3 + (parent ? 120 * wanted.tolerance : 0))
+                    << name << ", level " << exact << ", row " << row << ", column " << column;
             }
         }
-        EXPECT_GE(levels_seen.size(), 6U);
     }
+    EXPECT_LT(passed_over, compared / 5);
+    EXPECT_GE(levels_seen.size(), GetParam().finest_only ? 1U : 6U);
 }
+
+INSTANTIATE_TEST_SUITE_P(of, PgmHeights,
+                         testing::Values(Sampling{"spacing", "neighbour", "parent"},
+                                         Sampling{"spacing", "neighbour", "bilinear"},
+                                         Sampling{"spacing", "neighbour", "nearest"},
+                                         Sampling{"spacing", "formula", "parent"},
+                                         Sampling{"spacing", "formula", "bilinear"},
+                                         Sampling{"distance", "neighbour", "parent"},
+                                         Sampling{"distance", "neighbour", "nearest"},
+                                         Sampling{"spacing", "neighbour", "bilinear", true}));
 
 // As bits: an edge inside the grid is used by two triangles, one on its border by one.
 TEST_F(PgmSurface, neighbouring_triangles_share_their_vertices_to_the_bit) {
@@ -223,6 +312,141 @@ TEST_F(PgmSurface, no_triangle_folds_over_in_plan) {
                 << name << ", triangle " << i / 3;
         }
     }
+}
+
+/// Settings of kSettings and more.
+std::vector<std::pair<std::string, std::string>> with(
+    const std::vector<std::pair<std::string, std::string>>& more) {
+    auto settings = kSettings;
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+}
+
+/// From each camera, in one flight, with nothing missing.
+std::vector<measure::CapturedSurface> settled_surfaces(
+    const std::shared_ptr<const Terrain>& terrain,
+    const std::vector<std::pair<std::string, std::string>>& settings,
+    const std::vector<NamedCamera>& cameras) {
+    Flight flight(terrain, "persistent_grid", "pgm", settings);
+    std::vector<measure::CapturedSurface> surfaces;
+    for (const auto& [name, camera] : cameras) {
+        flight.select(camera);
+        flight.stage().settle();
+        surfaces.push_back(flight.stage().capture());
+    }
+    return surfaces;
+}
+
+bool equal_bits(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+// Windows as large as the terrain hold all of it.
+TEST(PgmOutOfCore, is_what_it_is_in_core_to_the_bit_where_the_windows_hold_the_levels) {
+    const auto terrain = hills(201, 166);
+    const auto all = cameras(terrain->info());
+    for (const std::string level : {"spacing", "distance"}) {
+        const auto whole = settled_surfaces(
+            terrain, with({{"storage", "whole"}, {"level", level}, {"window", "256"}}), all);
+        const auto windows = settled_surfaces(
+            terrain,
+            with({{"storage", "windows"}, {"level", level}, {"window", "256"}, {"cache", "false"}}),
+            all);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            EXPECT_TRUE(equal_bits(windows[i].vertices, whole[i].vertices))
+                << all[i].name << ", " << level;
+        }
+    }
+}
+
+// Small ones hold a part: where that is what a vertex needs, it is the same vertex. Elsewhere its
+// height comes from a coarser level.
+TEST(PgmOutOfCore, a_vertex_whose_texels_the_windows_hold_is_that_in_core_to_the_bit) {
+    constexpr int kWindow = 64;
+    const auto terrain = hills(500, 700);
+    const TerrainInfo& info = terrain->info();
+    const auto all_cameras = cameras(info);
+    const auto whole = settled_surfaces(terrain, with({{"storage", "whole"}}), all_cameras);
+    const auto windows = settled_surfaces(
+        terrain, with({{"storage", "windows"}, {"window", "64"}, {"cache", "false"}}), all_cameras);
+    int the_same = 0, coarser = 0;
+    const int last = persistent_grid::level_count(info) - 1;
+    for (std::size_t frame = 0; frame < all_cameras.size(); ++frame) {
+        const auto& [name, camera] = all_cameras[frame];
+        const Mapping mapping = persistent_grid::make_mapping(camera, info, 0, {kMargin}, kGrid);
+        const auto expected = grid_vertices(whole[frame]);
+        const auto found = grid_vertices(windows[frame]);
+        const auto place_of = [&](const glm::dvec2& world) {
+            const glm::dvec2 samples = (world - info.origin) / info.spacing;
+            return glm::dvec2(samples.x, info.rows - 1 - samples.y);
+        };
+        // Whether the middle of a window holds the four texels around a place, by a texel to spare.
+        const auto held = [&](int level, const glm::dvec2& place) {
+            const glm::dvec2 size(persistent_grid::level_size(info, level));
+            const glm::dvec2 texel = (place + 0.5) / std::exp2(level) - 0.5;
+            const glm::dvec2 eye =
+                (place_of(glm::dvec2(camera.position)) + 0.5) / std::exp2(level) - 0.5;
+            const glm::dvec2 low = glm::clamp(eye - kWindow / 2.0 + 2.0, glm::dvec2(0),
+                                              glm::max(size - double(kWindow), 0.0));
+            const glm::dvec2 read = glm::clamp(texel, glm::dvec2(0), size - 1.0);
+            return glm::all(glm::greaterThanEqual(read, low)) &&
+                   glm::all(glm::lessThanEqual(read + 1.0, low + (kWindow - 3.0)));
+        };
+        for (int row = 0; row < kGrid.rows; ++row) {
+            for (int column = 0; column < kGrid.columns; ++column) {
+                const auto i = std::size_t(row * kGrid.columns + column);
+                ASSERT_EQ(found[i].x, expected[i].x) << name;
+                ASSERT_EQ(found[i].y, expected[i].y) << name;
+                const double r = persistent_grid::farthest_neighbour(mapping, kGrid, column, row);
+                const double texels = std::max(r / 12.5, 1.0) * 0.999;
+                const int level = std::min(last, int(std::max(0.0, std::floor(std::log2(texels)))));
+                const glm::dvec2 place =
+                    place_of(glm::dvec2(camera.position) + glm::dvec2(expected[i]));
+                // The level, the next (where rounding may put r) and its parent.
+                bool all = true;
+                for (int l = level; l <= std::min(level + 2, last); ++l) all &= held(l, place);
+                if (all) {
+                    ASSERT_EQ(found[i].z, expected[i].z) << name << ": " << row << ", " << column;
+                    ++the_same;
+                } else {
+                    coarser += found[i].z != expected[i].z ? 1 : 0;
+                }
+            }
+        }
+    }
+    EXPECT_GT(the_same, 5000);
+    EXPECT_GT(coarser, 50);
+}
+
+TEST(PgmOutOfCore, what_is_drawn_depends_on_the_camera_alone_once_it_has_settled) {
+    const auto terrain = hills(500, 700);
+    const auto settings = with({{"storage", "windows"}, {"window", "64"}, {"cache", "false"}});
+    const auto all = cameras(terrain->info());
+    const auto flown = settled_surfaces(terrain, settings, all);
+    auto entire = settings;
+    entire.emplace_back("update", "entire");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto fresh = settled_surfaces(terrain, entire, {all[i]});
+        EXPECT_TRUE(equal_bits(flown[i].vertices, fresh[0].vertices)) << all[i].name;
+    }
+}
+
+// In its first frames, before anything has been read: the levels that are in memory.
+TEST(PgmOutOfCore, before_anything_is_read_the_coarse_levels_are_drawn) {
+    const auto terrain = hills(500, 700);
+    Flight flight(terrain, "persistent_grid", "pgm",
+                  with({{"storage", "windows"}, {"window", "64"}, {"cache", "false"}}));
+    flight.stage().pause_background();
+    const auto surface = flight.surface(cameras(terrain->info()).front().camera);
+    EXPECT_EQ(flight.counter("windows_behind"), 4) << "500 x 700 to 63 x 88 texels";
+    for (const glm::vec3& vertex : surface.vertices) {
+        const double height = double(vertex.z) + surface.origin.z;
+        ASSERT_GE(height, terrain->info().min_height);
+        ASSERT_LE(height, terrain->info().max_height);
+    }
+    flight.stage().resume_background();
+    flight.stage().settle();
+    EXPECT_EQ(flight.counter("windows_behind"), 0);
 }
 
 TEST(PgmSurfaceOverAPlane, straight_down_it_is_the_uniform_grid) {
