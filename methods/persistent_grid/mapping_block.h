@@ -20,6 +20,6 @@ using block::MappingBlock;
 inline constexpr GLuint kMappingBinding = gl::kFirstFreeBinding;  // PGM_MAPPING_BINDING of pgm.vert
 inline constexpr std::size_t kMaximumLevels = 24;
 static_assert(offsetof(MappingBlock, atlas) == 96 &&
-              sizeof(MappingBlock) == 96 + 2 * 16 * kMaximumLevels);
+              sizeof(MappingBlock) == 96 + std::size_t(32) * kMaximumLevels);
 
 }  // namespace lodbench::persistent_grid

@@ -99,7 +99,8 @@ TEST_F(PgmClipWindows, lie_apart_and_stand_about_the_viewpoint_as_far_as_the_ter
                 for (int x = 0; x < kTexels; ++x) {
                     const glm::ivec2 texel =
                         texel_of(windows, level, target.low + glm::ivec2(x, y));
-                    const auto place_in_texture = std::size_t(texel.y * texture.size.x + texel.x);
+                    const std::size_t place_in_texture =
+                        std::size_t(texel.y) * std::size_t(texture.size.x) + std::size_t(texel.x);
                     ASSERT_FALSE(used[place_in_texture]) << level;
                     used[place_in_texture] = true;
                 }
