@@ -74,6 +74,18 @@ double distance_to_segment(const glm::dvec3& axis, const glm::dvec3& a, const gl
     return glm::distance(axis, a + share * along);
 }
 
+/// False unless a point is farther than `plan` from a triangle, by what its sides say: quicker than
+/// the distance to its outline. A hundredth is far more than the rounding of a side's value for
+/// triangles that are not millions of times as large as the extent's `reach`.
+bool lies_beyond(const PlanTriangle& triangle, const glm::dvec2& point, double plan, double reach) {
+    const glm::dvec2 size = triangle.high - triangle.low;
+    if (std::max(size.x, size.y) > 0x1p20 * reach) return false;
+    return std::ranges::any_of(triangle.edges, [&](const PlanTriangle::Edge& edge) {
+        const double side = edge.side(point);
+        return side < 0 && side * side > 1.02 * plan * plan * glm::dot(edge.along, edge.along);
+    });
+}
+
 void append(std::vector<glm::vec3>& vertices, const glm::vec3* corners) {
     vertices.insert(vertices.end(), corners, corners + 3);
 }
@@ -231,6 +243,8 @@ DrawnSurface::Look DrawnSurface::look(const glm::dvec2& position) const {
         const bool covers = triangle.covers(point);
         if (covers && has_inside) {
             covering = std::max(covering, triangle.height(point));
+        } else if (!covers && lies_beyond(triangle, point, plan, reach_)) {
+            return;
         } else {
             const OutlinePoint nearest = nearest_on_outline(corners, point);
             if (nearest.distance <= plan) {
@@ -292,9 +306,10 @@ bool DrawnSurface::passes_below(const glm::dvec3& origin, const glm::dvec3& dire
     const std::optional<PlanRay> ray =
         PlanRay::over(low_, high_, origin - origin_, direction, from, to);
     if (!ray) return false;
-    return surface_.any(
-        [&ray](const TriangleTree::Node& node) { return ray->reaches(node); },
-        [&ray](const glm::vec3* corners) { return ray->is_below(PlanTriangle(corners)); });
+    return surface_.any([&ray](const TriangleTree::Node& node) { return ray->reaches(node); },
+                        [&ray](const glm::vec3* corners) {
+                            return ray->reaches(corners) && ray->is_below(PlanTriangle(corners));
+                        });
 }
 
 std::optional<double> DrawnSurface::meets_skirt(const glm::dvec3& origin,

@@ -2,6 +2,7 @@
 // A ray over the plan: which boxes of a tree it comes low enough for, whether it is below a
 // triangle.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <glm/vec2.hpp>
@@ -44,6 +45,20 @@ public:
             mask |= ((in[0] != 0 ? 1U : 0U) | (in[1] != 0 ? 2U : 0U)) << i;
         }
         return mask;
+    }
+
+    /// The same of the box of one triangle, its corners in the order of `ordered`.
+    [[nodiscard]] bool reaches(const glm::vec3* corners) const {
+        const auto [south, north] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
+        const double x0 = (double(corners[0].x) - origin_.x) * inverse_.x;
+        const double x1 = (double(corners[2].x) - origin_.x) * inverse_.x;
+        const double y0 = (double(south) - origin_.y) * inverse_.y;
+        const double y1 = (double(north) - origin_.y) * inverse_.y;
+        const double enter = std::max({std::min(x0, x1), std::min(y0, y1), from_});
+        const double leave = std::min({std::max(x0, x1), std::max(y0, y1), to_});
+        const double lowest = origin_.z + (direction_.z < 0 ? leave : enter) * direction_.z;
+        const double highest = std::max({corners[0].z, corners[1].z, corners[2].z});
+        return enter <= leave + margin_t_ && lowest - margin_z_ <= highest;
     }
 
     /// Whether the ray is below the triangle anywhere over it. Their difference is linear in t: its

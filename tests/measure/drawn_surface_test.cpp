@@ -91,6 +91,67 @@ TEST(DrawnSurface, the_highest_wins) {
     EXPECT_EQ(found[std::size_t(7) * 11 + 6], 3.5F);
 }
 
+/// The greatest rounding among the triangles at a point, by asking each.
+DrawnSurface::Rounding rounding_at(const Mesh& mesh, const TerrainInfo& info,
+                                   const glm::dvec2& position) {
+    const glm::dvec2 eye(mesh.eye);
+    const glm::dvec2 low = glm::abs(info.extent_min() - eye);
+    const glm::dvec2 high = glm::abs(info.extent_max() - eye);
+    const double reach = std::max({low.x, low.y, high.x, high.y});
+    DrawnSurface::Rounding greatest;
+    for (std::size_t i = 0; i < mesh.vertices.size(); i += 3) {
+        const Corners corners =
+            ordered({mesh.vertices[i], mesh.vertices[i + 1], mesh.vertices[i + 2]});
+        double in_plan = 0, upright = 0;
+        for (const glm::vec3& corner : corners) {
+            in_plan = std::max({in_plan, double(std::abs(corner.x)), double(std::abs(corner.y))});
+            upright = std::max(upright, double(std::abs(corner.z)));
+        }
+        const double plan = DrawnSurface::kRoundingUnits * kUnit * std::min(in_plan, reach);
+        if (!PlanTriangle(corners.data()).covers(position - eye) &&
+            nearest_on_outline(corners.data(), position - eye).distance > plan) {
+            continue;
+        }
+        greatest.plan = std::max(greatest.plan, plan);
+        greatest.height = std::max(greatest.height, DrawnSurface::kRoundingUnits * kUnit * upright);
+    }
+    return greatest;
+}
+
+TEST(DrawnSurface, one_look_finds_the_height_and_the_greatest_rounding_there) {
+    const TerrainInfo info = terrain(65, 65, 3);
+    Random random(8);
+    int beside = 0, uncovered = 0;
+    for (int trial = 0; trial < 30; ++trial) {
+        const Mesh mesh = soup(random, info, 20);
+        const DrawnSurface surface = mesh.drawn(info);
+        const auto ask = [&](const glm::dvec2& place) {
+            const glm::dvec2 point = glm::clamp(place, info.extent_min(), info.extent_max());
+            const DrawnSurface::Look look = surface.look(point);
+            const DrawnSurface::Rounding expected = rounding_at(mesh, info, point);
+            ASSERT_EQ(look.height, surface.height(point)) << point.x << ", " << point.y;
+            ASSERT_EQ(look.rounding.plan, expected.plan) << point.x << ", " << point.y;
+            ASSERT_EQ(look.rounding.height, expected.height) << point.x << ", " << point.y;
+            ASSERT_EQ(look.height.has_value(), expected.plan > 0);
+            uncovered += look.height ? 0 : 1;
+        };
+        for (int i = 0; i < 200; ++i) ask(random.inside(info));
+        // On sides, and about a rounding beside them.
+        for (std::size_t i = 0; i + 1 < mesh.vertices.size(); ++i) {
+            const glm::dvec3 side =
+                glm::mix(glm::dvec3(mesh.vertices[i]), glm::dvec3(mesh.vertices[i + 1]),
+                         random.between(0, 1));
+            const double step = 200 * 4 * kUnit;
+            for (int k = 0; k < 5; ++k, ++beside) {
+                ask(glm::dvec2(mesh.eye + side) +
+                    glm::dvec2(random.between(-step, step), random.between(-step, step)));
+            }
+        }
+    }
+    EXPECT_GT(beside, 5000);
+    EXPECT_GT(uncovered, 20);
+}
+
 TEST(DrawnSurface, a_hole_of_one_cell_is_uncovered_inside_and_only_there) {
     const TerrainInfo info = terrain(17, 17);
     Mesh mesh;
