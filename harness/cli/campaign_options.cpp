@@ -75,15 +75,11 @@ std::filesystem::path make_default_out() {
 
 }  // namespace
 
-void CampaignOptions::add_to(CLI::App& command) {
+void CampaignOptions::add_request(CLI::App& command) {
     add_repeated(command, "--method,-m", request.methods,
                  "method to fly; none: as the scenario says");
     add_repeated(command, "--set", request.settings,
                  "[METHOD.]PARAM=VALUE[,VALUE...]; several values are swept");
-    out_option_ = command.add_option(
-        "--out,-o", request.out,
-        "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
-        "where that is taken");
     add_plugin_dirs(command, request.plugin_dirs);
     add_overrides(command, request.overrides);
     seed_option_ = add_seed(command, seed_, "seed of the order and of random choices");
@@ -91,11 +87,31 @@ void CampaignOptions::add_to(CLI::App& command) {
                  "repetitions of each cell")
         ->check(CLI::Range(1, 1000));
     add_device(command, request.device);
+}
+
+void CampaignOptions::add_to(CLI::App& command) {
+    add_request(command);
+    out_option_ = command.add_option(
+        "--out,-o", request.out,
+        "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
+        "where that is taken");
     command.add_flag("--json", json, "print one JSON object instead of the table");
 }
 
 void CampaignOptions::add_resume(CLI::App& command, const char* help) {
     command.add_flag("--resume", request.resume, help);
+}
+
+void CampaignOptions::add_shard(CLI::App& command) {
+    command
+        .add_option_function<std::string>(
+            "--shard",
+            [this](const std::string& text) {
+                request.shard = run::parse_shard(text, "--shard " + text);
+            },
+            "flies part I of N of the campaign, whole repetitions of a scenario: for several "
+            "machines, see `lodbench plan` and `lodbench merge`")
+        ->type_name("I/N");
 }
 
 void CampaignOptions::require_folder_to_resume() const {
@@ -115,12 +131,14 @@ void CampaignOptions::name_settings() {
     }
 }
 
-void CampaignOptions::finish() {
+void CampaignOptions::finish_request() {
     name_settings();
-    if (*seed_option_) {
-        request.overrides.set("run.seed", fmt::format("{}", seed_),
-                              fmt::format("--seed {}", seed_));
-    }
+    if (!*seed_option_) return;
+    request.overrides.set("run.seed", fmt::format("{}", seed_), fmt::format("--seed {}", seed_));
+}
+
+void CampaignOptions::finish() {
+    finish_request();
     request.load_average = run::load_average();
     request.command_line = fmt::format("{}", fmt::join(command_words(), " "));
     if (request.out.empty()) request.out = made_ = make_default_out();

@@ -25,17 +25,23 @@ public:
     /// Removes the folder that `finish` made where nothing was written into it.
     ~CampaignOptions();
 
-    /// Adds --method, --set, --out, --plugin-dir, --frames, --size, --seed, --repeat, --device and
-    /// --json.
+    /// Adds --method, --set, --plugin-dir, --frames, --size, --override, --seed, --repeat and
+    /// --device: what is flown.
+    void add_request(CLI::App& command);
+    /// And --out and --json.
     void add_to(CLI::App& command);
     /// Adds --resume, for commands that can go on with what they began.
     void add_resume(CLI::App& command, const char* help);
+    /// Adds --shard, for campaigns that are planned as a whole before the first cell.
+    void add_shard(CLI::App& command);
     /// Throws InputError for --resume without --out.
     void require_folder_to_resume() const;
     /// Once the command line is read: of settings without a method, that one of --method. Throws
     /// InputError where several or none are asked for.
     void name_settings();
-    /// The same, and seed, command line and, where none is named, the folder,
+    /// The same, and the seed, for commands that have `add_request` alone.
+    void finish_request();
+    /// The same, command line and, where none is named, the folder,
     /// which is made. Throws EnvironmentError.
     void finish();
     /// Runs `command` so that Ctrl-C ends it in good order: the cell that is flown is given up, and

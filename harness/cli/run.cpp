@@ -46,7 +46,11 @@ void print_outcome(const run::CampaignOutcome& outcome, bool json) {
         base::print("{}\n", results::to_text(to_json(outcome)));
         return;
     }
-    base::print("\n{}\n", tables(outcome));
+    if (outcome.nothing_to_fly) {
+        base::print("this shard has no block: there are more shards than blocks\n");
+    } else {
+        base::print("\n{}\n", tables(outcome));
+    }
     base::print("{}results   {}\npictures  {}\n", warnings_line(outcome), outcome.out.string(),
                 (outcome.out / "shots").string());
 }
@@ -85,6 +89,7 @@ void add_run(CLI::App& app, int& status) {
     command->add_flag("--wait-for-debugger", options->request.wait_for_debugger,
                       "each cell says its process and waits until a debugger is attached; no time "
                       "limit ends it");
+    options->add_shard(*command);
     options->add_resume(*command, "finish what is missing in --out, as the run began");
     command->callback(
         [options, &status] { status = options->interruptibly([&] { return fly(*options); }); });

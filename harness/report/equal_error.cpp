@@ -253,15 +253,24 @@ std::vector<std::string> equal_words(const EqualFlight& flight, const std::vecto
 
 std::string equal_text(const EqualFlight& flight, const std::vector<results::CellRecord>& cells,
                        const std::map<std::string, std::string>& knobs) {
-    const std::vector<results::CellGroup> groups = results::group_cells(cells);
-    const std::vector<EqualRow> rows = equal_rows(flight, groups, knobs);
-    const std::vector<std::string> words = equal_words(flight, rows);
-    std::string text = fmt::format(
-        "## {}: what methods cost at the same measured error, P99.9 = {} within {:.3g} "
-        "%\n\n{}\n{}\n",
-        flight.scenario, px(flight.error_px), 100 * flight.tolerance, table_of(flight, rows),
-        words.front());
-    for (std::size_t i = 1; i < words.size(); ++i) text += "- " + words[i] + "\n";
+    std::map<std::string, std::vector<results::CellGroup>> comparisons;
+    for (results::CellGroup& group : results::group_cells(cells)) {
+        if (group.scenario == flight.scenario) {
+            comparisons[group.comparison()].push_back(std::move(group));
+        }
+    }
+    if (comparisons.empty()) comparisons[flight.scenario];  // whose words say that nothing flew
+    std::string text;
+    for (const auto& [title, groups] : comparisons) {
+        const std::vector<EqualRow> rows = equal_rows(flight, groups, knobs);
+        const std::vector<std::string> words = equal_words(flight, rows);
+        text += fmt::format(
+            "{}## {}: what methods cost at the same measured error, P99.9 = {} within {:.3g} "
+            "%\n\n{}\n{}\n",
+            text.empty() ? "" : "\n", title, px(flight.error_px), 100 * flight.tolerance,
+            table_of(flight, rows), words.front());
+        for (std::size_t i = 1; i < words.size(); ++i) text += "- " + words[i] + "\n";
+    }
     return text;
 }
 

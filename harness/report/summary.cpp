@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 
 #include "report/equal_error.h"
 #include "report/table.h"
+#include "results/cell_groups.h"
+#include "results/deterministic.h"
 
 namespace lodbench::report {
 namespace {
@@ -37,12 +41,14 @@ std::string summary_text(const std::vector<results::CellRecord>& cells,
     if (!text.empty()) text += "\n";
     text += equal_texts(cells, run);
     text += markdown_table(table_rows(cells, seed));
+    std::vector<std::string> remarks = warnings;
+    std::ranges::copy(results::device_differences(cells), std::back_inserter(remarks));
     const auto fold = [&text](const std::string& title) {
         text += fmt::format("\n<details><summary>{}</summary>\n\n", title);
     };
-    if (!warnings.empty()) {
-        fold(fmt::format("Warnings: {}", warnings.size()));
-        for (const std::string& warning : warnings) {
+    if (!remarks.empty()) {
+        fold(fmt::format("Warnings: {}", remarks.size()));
+        for (const std::string& warning : remarks) {
             text += fmt::format("- {}\n", markdown_text(warning));
         }
         text += "\n</details>\n";
@@ -55,6 +61,7 @@ std::string summary_text(const std::vector<results::CellRecord>& cells,
         text += line("renderer", run["gl"]["renderer"]) + line("OpenGL", run["gl"]["version"]);
         text += line("timer", run["gl"]["timer_verdict"]);
     }
+    for (const std::string& device : results::devices_of(cells)) text += line("device", device);
     text += fmt::format("- seed: {}\n\n</details>\n", seed);
     return text;
 }

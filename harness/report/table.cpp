@@ -67,7 +67,7 @@ std::vector<TableRow> table_rows(const std::vector<results::CellRecord>& cells,
                                  std::uint64_t seed) {
     std::vector<TableRow> rows;
     for (const results::CellGroup& group : results::group_cells(cells)) {
-        TableRow row{group.scenario,
+        TableRow row{group.comparison(),
                      group.label,
                      {},
                      results::failures_of(group),

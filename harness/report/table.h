@@ -11,8 +11,8 @@ namespace lodbench::report {
 
 /// One method with one set of parameters on one scenario, over its repetitions.
 struct TableRow {
-    std::string scenario;
-    std::string label;  ///< the method's id and the parameters that differ between its rows
+    std::string scenario;  ///< and the device where there are several
+    std::string label;     ///< the method's id and the parameters that differ between its rows
     std::vector<std::string> fields;    ///< as kTableColumns after the first
     std::vector<std::string> failures;  ///< "status: reason" of the repetitions that are not ok
     std::vector<std::string> warnings;  ///< why the figures are not to be trusted

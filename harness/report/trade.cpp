@@ -204,7 +204,7 @@ std::vector<TradeRow> trade_rows(const std::vector<results::CellRecord>& cells,
     std::vector<TradeRow> rows;
     for (const results::CellGroup& group : results::group_cells(cells)) {
         TradeRow row;
-        row.scenario = group.scenario;
+        row.scenario = group.comparison();
         row.method = group.method;
         row.label = group.label;
         row.failures = results::failures_of(group);

@@ -110,10 +110,12 @@ struct CellRecord : CellName {
     std::optional<std::uint64_t> gpu_bytes, peak_rss_bytes;
     Counters counters;
     std::optional<double> claimed_px;
+    std::optional<double> cell_s;
 
     // Under which conditions.
     std::string depth_hash, shots_hash;
     std::string terrain, terrain_checksum, plugin_checksum;
+    std::string device;
     std::string timer_verdict;
     int warmup_frames = 0, frames_in_flight = 0;
     std::vector<std::string> modules;

@@ -223,6 +223,10 @@ struct FieldTable<CellRecord> {
         Field{"claimed_px", &R::claimed_px, "px",
               "the error bound that its paper claims: a claim, neither measured nor warranted"},
 
+        Field{"cell_s", &R::cell_s, "s",
+              "the whole cell, wall time: its process, the terrain, preprocessing, all replays and "
+              "the truth. What `lodbench plan --from` expects times by"},
+
         Field{"depth_hash", &R::depth_hash, "",
               "of the depth image at one frame, equal between replays"},
         Field{"shots_hash", &R::shots_hash, "",
@@ -231,6 +235,9 @@ struct FieldTable<CellRecord> {
         Field{"terrain", &R::terrain, "", "its name"},
         Field{"terrain_checksum", &R::terrain_checksum, "", "of the grid as served: 16 hex digits"},
         Field{"plugin_checksum", &R::plugin_checksum, "", "of the plugin's file: 16 hex digits"},
+        Field{"device", &R::device, "",
+              "what flew it: renderer and version of OpenGL, processor and cores. Times of two "
+              "devices are never pooled"},
         Field{"timer_verdict", &R::timer_verdict, "",
               "whether the GPU's timer can be believed, and what was used instead"},
         Field{"warmup_frames", &R::warmup_frames, "", "frames flown before the timing replay"},

@@ -140,16 +140,35 @@ std::optional<double> param_number(const CellRecord& cell, const std::string& na
     return std::nullopt;
 }
 
+std::string CellGroup::comparison() const {
+    return device.empty() ? scenario : fmt::format("{} on {}", scenario, device);
+}
+
+std::vector<std::string> devices_of(const std::vector<CellRecord>& cells) {
+    std::set<std::string> devices;
+    for (const CellRecord& cell : cells) {
+        if (!cell.device.empty()) devices.insert(cell.device);
+    }
+    return {devices.begin(), devices.end()};
+}
+
 std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {
     const SweptNames swept = swept_names(cells);
-    // By scenario, method, setting; the label keeps apart what the order does not.
-    std::map<std::tuple<std::string, std::string, SettingOrder, std::string>, CellGroup> groups;
+    const bool one_device = devices_of(cells).size() <= 1;
+    // By scenario, device, method, setting; the label keeps apart what the order does not.
+    std::map<std::tuple<std::string, std::string, std::string, SettingOrder, std::string>,
+             CellGroup>
+        groups;
     for (const CellRecord& cell : cells) {
         const std::string setting = setting_of(cell, swept);
         const std::string label = setting.empty() ? cell.method : cell.method + " " + setting;
-        CellGroup& group = groups[{cell.scenario, cell.method, order_of(cell, swept), label}];
+        // What failed before it had a context bears no device, and has no times either.
+        const std::string device = one_device ? "" : cell.device;
+        CellGroup& group =
+            groups[{cell.scenario, device, cell.method, order_of(cell, swept), label}];
         if (group.cells.empty()) {
             group.scenario = cell.scenario;
+            group.device = device;
             group.method = cell.method;
             group.label = label;
             group.setting = setting;

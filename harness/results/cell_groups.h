@@ -15,14 +15,21 @@ inline constexpr double kMebibyte = 1048576.0;  ///< bytes
 /// One method with one set of parameters on one scenario.
 struct CellGroup {
     std::string scenario;
+    std::string device;  ///< "" where all cells were flown on one
     std::string method;
     std::string label;    ///< the method's id and the parameters that differ between its groups
     std::string setting;  ///< the latter alone: "tau=0.5"; "" where there is one setting
     std::vector<const CellRecord*> cells;  ///< all repetitions
     std::vector<const CellRecord*> good;   ///< those that are ok
+
+    /// What it can be compared with: "demo", or "demo on DEVICE" where there are several.
+    [[nodiscard]] std::string comparison() const;
 };
 
-/// In order of scenario, method and setting, numbers by their size; pointers into `cells`.
+/// The devices that cells were flown on, each once, in the order of their names.
+[[nodiscard]] std::vector<std::string> devices_of(const std::vector<CellRecord>& cells);
+
+/// In order of scenario, device, method and setting, numbers by their size; pointers into `cells`.
 [[nodiscard]] std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells);
 
 /// "status (repetition n): reason" of those that are not ok.

@@ -63,18 +63,6 @@ void check_schema(const Json::Value& json, const fs::path& file) {
         kSchemaVersion));
 }
 
-Json::Value read_run(const fs::path& folder) {
-    const fs::path file = folder / "run.json";
-    Json::Value run =
-        parse_json(read_input(file, "name a results folder, as `lodbench run --out DIR` writes it"),
-                   file.string());
-    check_schema(run, file);
-    for (const char* key : {"scenarios", "warnings", "noise", "cells"}) {
-        if (!run[key].isNull()) (void)get_array(run, key, file.string());
-    }
-    return run;
-}
-
 void read_cells(ResultFolder& folder) {
     const fs::path file = folder.path / "cells.jsonl";
     const std::string text = read_input(file,
@@ -196,6 +184,18 @@ void read_search(ResultFolder& folder) {
 }
 
 }  // namespace
+
+Json::Value read_run(const fs::path& folder) {
+    const fs::path file = folder / "run.json";
+    Json::Value run =
+        parse_json(read_input(file, "name a results folder, as `lodbench run --out DIR` writes it"),
+                   file.string());
+    check_schema(run, file);
+    for (const char* key : {"scenarios", "warnings", "noise", "cells"}) {
+        if (!run[key].isNull()) (void)get_array(run, key, file.string());
+    }
+    return run;
+}
 
 void expect_plain_file(const fs::path& file) {
     std::error_code ignored;

@@ -55,6 +55,9 @@ struct ResultFolder {
     std::vector<std::string> warnings;            ///< that something is not there yet
 };
 
+/// run.json of a folder, an object of this schema version. Throws InputError with file and remedy.
+[[nodiscard]] Json::Value read_run(const std::filesystem::path& folder);
+
 /// Reads and checks all of it. Throws InputError with file, line and remedy where something in it
 /// is missing, damaged, or of another schema version; results that were not measured, pictures and
 /// flights may be missing.

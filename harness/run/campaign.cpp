@@ -83,6 +83,10 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
     run["command_line"] = request.command_line;
     run["seed"] = Json::UInt64(plan.seed);
     run["device_asked"] = request.device;
+    run["overrides"] = Json::objectValue;
+    for (const auto& [key, value] : request.overrides.values()) {
+        run["overrides"][key] = value.toml;
+    }
     run["gl"] = Json::Value::null;
     run["scenarios"] = Json::arrayValue;
     for (std::size_t i = 0; i < plan.scenarios.size(); ++i) {
@@ -112,6 +116,26 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
     for (const std::string& warning : plan.warnings) run["warnings"].append(warning);
     run["cells"] = plan_to_json(plan);
     return run;
+}
+
+Json::Value to_json(const Shard& shard) {
+    Json::Value json;
+    json["number"] = shard.number;
+    json["count"] = shard.count;
+    return json;
+}
+
+/// The shard that a folder holds; nothing where it holds a whole run. Throws InputError.
+std::optional<Shard> shard_of(const Json::Value& run, const std::string& where) {
+    const Json::Value& shard = run["shard"];
+    if (shard.isNull()) return std::nullopt;
+    return parse_shard(fmt::format("{:.0f}/{:.0f}", results::get_number(shard, "number", where),
+                                   results::get_number(shard, "count", where)),
+                       where + ": shard");
+}
+
+std::string words_of(const std::optional<Shard>& shard) {
+    return shard ? "shard " + shard->text() : "a whole run";
 }
 
 /// Of run.json, what is shown as text or changed when it is resumed. Throws InputError.
@@ -170,6 +194,7 @@ public:
         }
         folder_.drop_views();  // also where the disk is full: the room is the results'
         outcome_.run = run_;
+        outcome_.nothing_to_fly = plan_.cells.empty();
         return std::move(outcome_);
     }
 
@@ -230,8 +255,15 @@ private:
             list_plugins(plugin_folders(request_.plugin_dirs));
         plan_ = make_plan(request_, plugins);
         outcome_.warnings = plan_.warnings;
+        // Of the whole, so that the parts of one campaign know each other.
+        const std::string campaign = checksum_of(plan_);
+        const std::size_t campaign_cells = plan_.cells.size();
+        if (request_.shard) keep_shard(plan_, *request_.shard);
         claim_names();
         run_ = run_context(request_, plan_, plugins);
+        run_["campaign"] = campaign;
+        run_["campaign_cells"] = Json::UInt64(campaign_cells);
+        run_["shard"] = request_.shard ? to_json(*request_.shard) : Json::Value::null;
         write_run();  // first of all: it says whose folder this is
         folder_.make_parts();
         write_scenarios(run_["scenarios"]);
@@ -270,6 +302,7 @@ private:
         }
         try {
             check_context(run_, file.string());
+            refuse_other_shard(file);
             refuse_other_build(file);
             folder_.make_parts();
             write_scenarios(run_["scenarios"]);  // a run killed early may not have come to it
@@ -288,6 +321,23 @@ private:
         results::expect_plain_file(folder_.path() / "cells.jsonl");
         outcome_.cells = folder_.repair();
         for (const results::CellRecord& cell : outcome_.cells) finished_.insert(cell.cell);
+    }
+
+    /// A part is finished as the part that it began as, and what was merged where it was flown.
+    void refuse_other_shard(const fs::path& file) const {
+        if (run_.isMember("shards")) {
+            throw InputError(fmt::format(
+                "{}: this folder was merged from others; finish those with --resume, and merge "
+                "them again",
+                file.string()));
+        }
+        const std::optional<Shard> began = shard_of(run_, file.string());
+        // Without arguments the folder alone says what is finished.
+        if (began == request_.shard || (!request_.shard && !request_.names_cells())) return;
+        throw InputError(fmt::format(
+            "{}: the folder holds {}, and {} is asked for; give --resume and --out alone, or "
+            "another --out",
+            file.string(), words_of(began), words_of(request_.shard)));
     }
 
     /// Cells of one run compare methods under one program.
@@ -346,7 +396,8 @@ private:
     void refuse_other_request(const fs::path& file,
                               const std::vector<PluginListing>& plugins) const {
         if (!request_.names_cells()) return;
-        const Plan asked = make_plan(request_, plugins);
+        Plan asked = make_plan(request_, plugins);
+        if (request_.shard) keep_shard(asked, *request_.shard);
         const bool same_scenarios =
             std::ranges::equal(asked.scenarios, plan_.scenarios, {}, &scenario::Scenario::text,
                                &scenario::Scenario::text);
@@ -372,6 +423,7 @@ private:
             limits.cell_s = limits.frame_s = std::numeric_limits<double>::infinity();
             warn_once("flown under a debugger (--wait-for-debugger): times mean nothing");
         }
+        const auto begin = std::chrono::steady_clock::now();
         const results::CellResult result =
             run_cell(cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
                      [&](int done, int total) {
@@ -384,7 +436,10 @@ private:
             results::finish_cell({cell.spec.id, cell.scenario, cell.spec.method, cell.params,
                                   cell.spec.repetition, cell.spec.seed},
                                  result, scenario.measure.budget_ms);
+        record.cell_s =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         refuse_changed_input(record);
+        if (!result.gl_renderer.empty()) record.device = device_text(result, machine_context());
         if (!result.gl_renderer.empty()) refuse_other_renderer(gl_context(result));
         for (const std::string& warning : result.flight_warnings) warn_once(warning);
         const std::string csv = results::frames_csv(result.frames);
@@ -471,7 +526,7 @@ int CampaignOutcome::exit_status() const {
     if (has(CellStatus::failed) || has(CellStatus::crashed) || has(CellStatus::timeout)) {
         return kCellFailed;
     }
-    if (!has(CellStatus::ok)) return kNothingMeasured;
+    if (!has(CellStatus::ok) && !nothing_to_fly) return kNothingMeasured;
     return error.empty() ? kAllWell : kCellFailed;
 }
 

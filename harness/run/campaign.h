@@ -41,8 +41,9 @@ struct CampaignOutcome {
     std::vector<results::CellRecord> cells;  ///< all that stand in cells.jsonl
     std::vector<std::string> warnings;
     std::uint64_t seed = 1;
-    Json::Value run;    ///< the object of run.json
-    std::string error;  ///< why it ended early (a full disk); "" when it did not
+    Json::Value run;              ///< the object of run.json
+    bool nothing_to_fly = false;  ///< a shard without a block: there are more shards than blocks
+    std::string error;            ///< why it ended early (a full disk); "" when it did not
     /// 0, 3 or 4, as docs/manual.md says.
     [[nodiscard]] int exit_status() const;
 };

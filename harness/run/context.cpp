@@ -134,6 +134,11 @@ Json::Value machine_context() {
     return json;
 }
 
+std::string device_text(const results::CellResult& result, const Json::Value& machine) {
+    return fmt::format("{}, OpenGL {}; {}, {} cores", result.gl_renderer, result.gl_version,
+                       results::value_text(machine["cpu"]), results::value_text(machine["cores"]));
+}
+
 Json::Value gl_context(const results::CellResult& result) {
     Json::Value json;
     json["vendor"] = result.gl_vendor;

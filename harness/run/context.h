@@ -32,6 +32,11 @@ namespace lodbench::run {
 /// Date and time in UTC: "2025-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_now();
 
+/// What flew a cell, in words: "llvmpipe (...), OpenGL 4.5 ...; AMD EPYC, 2 cores". `machine` is
+/// its `machine_context`.
+[[nodiscard]] std::string device_text(const results::CellResult& result,
+                                      const Json::Value& machine);
+
 /// What a cell's child saw of its GL context.
 [[nodiscard]] Json::Value gl_context(const results::CellResult& result);
 

@@ -190,7 +190,7 @@ const MethodInfo& method_again(const std::vector<PluginListing>& plugins, const 
 
 bool RunRequest::names_cells() const {
     return !scenarios.empty() || !methods.empty() || !settings.empty() || !device.empty() ||
-           !overrides.empty();
+           !overrides.empty() || shard;
 }
 
 std::optional<Settings::value_type> kept_knob(const scenario::Scenario& scenario,
@@ -309,7 +309,10 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     plan.seed = plan.scenarios.front().seed;
     interleave(plan.cells, plan.seed);
     base::SplitMix64 seeds(~plan.seed);
-    for (PlannedCell& cell : plan.cells) cell.spec.seed = seeds.next();
+    for (std::size_t i = 0; i < plan.cells.size(); ++i) {
+        plan.cells[i].spec.seed = seeds.next();
+        plan.cells[i].place = i;
+    }
     return plan;
 }
 
@@ -320,6 +323,7 @@ Json::Value plan_to_json(const Plan& plan) {
         // Where the results lie and where from they are read is known by whoever opens the folder.
         for (const char* key : {"out", "scenario_file", "scenario_origin"}) json.removeMember(key);
         json["scenario"] = cell.scenario;
+        json["place"] = Json::UInt64(cell.place);
         cells.append(json);
     }
     return cells;
@@ -335,6 +339,8 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out,
         cell.spec = read_spec(results::to_text(json), where);
         results::expect_file_name(cell.spec.id, "cell", where);
         cell.scenario = results::get_string(json, "scenario", where);
+        // A run of an older version is whole.
+        cell.place = json.isMember("place") ? json["place"].asUInt64() : plan.cells.size();
         const MethodInfo& method = method_again(plugins, cell.spec.method);
         cell.spec.plugin = method.plugin;
         cell.params = make_params(method, cell.spec.settings, where);

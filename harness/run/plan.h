@@ -11,6 +11,7 @@
 
 #include "run/cell.h"
 #include "run/plugin_library.h"
+#include "run/shard.h"
 #include "scenario/scenario.h"
 
 namespace lodbench::run {
@@ -21,12 +22,14 @@ struct RunRequest {
     std::vector<std::string> methods;              ///< ids; empty: as the scenario says
     std::vector<std::string> settings;             ///< "METHOD.PARAM=VALUE[,VALUE...]"
     std::filesystem::path out;
-    std::filesystem::path views;  ///< where views of the terrain are kept between campaigns; "": not
+    std::filesystem::path
+        views;  ///< where views of the terrain are kept between campaigns; "": not
     std::vector<std::filesystem::path> plugin_dirs;
     scenario::Overrides overrides;
     std::string device;
     std::string command_line;
     std::optional<double> load_average;  ///< when the command began: before its own load
+    std::optional<Shard> shard;          ///< the part of the campaign that is flown; nothing: all
     bool resume = false;
     /// Methods fly at the knob values that a scenario keeps ([equal]) where nothing else sets them.
     bool kept_knobs = true;
@@ -39,8 +42,9 @@ struct RunRequest {
 
 struct PlannedCell {
     CellSpec spec;
-    std::string scenario;  ///< its name
-    Params params;         ///< complete
+    std::string scenario;   ///< its name
+    Params params;          ///< complete
+    std::size_t place = 0;  ///< in the order of flight of the whole campaign
 };
 
 struct Plan {

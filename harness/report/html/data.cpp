@@ -20,14 +20,16 @@ ReportData arrange(const std::vector<results::ResultFolder>& folders) {
         for (results::CellGroup& group : results::group_cells(folder.cells)) {
             data.colors.emplace(group.method, 0);
             const bool begins = data.sets.empty() || data.sets.back().folder != &folder ||
-                                data.sets.back().scenario != group.scenario;
+                                data.sets.back().scenario != group.scenario ||
+                                data.sets.back().device != group.device;
             if (begins) {
                 ResultSet& set = data.sets.emplace_back();
                 set.folder = &folder;
                 set.scenario = group.scenario;
+                set.device = group.device;
                 set.title = folders.size() == 1
-                                ? group.scenario
-                                : fmt::format("{} ({})", group.scenario, folder.name);
+                                ? group.comparison()
+                                : fmt::format("{} ({})", group.comparison(), folder.name);
                 set.id = fmt::format("set{}", data.sets.size());
                 set.plotted = data.sets.size() <= kMostPlottedSets;
                 const auto flight = folder.flights.find(group.scenario);

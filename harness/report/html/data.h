@@ -22,12 +22,13 @@ inline constexpr std::size_t kMostCurvePoints = 240;
 inline constexpr std::size_t kMostRows = 400;            ///< of all tables but summary and cells
 inline constexpr std::size_t kPictureBytes = 3'000'000;  ///< of all pictures together, as text
 
-/// One scenario of one folder: the comparison that its numbers allow.
+/// One scenario of one folder on one device: the comparison that its numbers allow.
 struct ResultSet {
     const results::ResultFolder* folder = nullptr;
     std::string scenario;
-    std::string title;  ///< with the folder's name where there are several
-    std::string id;     ///< of the page's elements
+    std::string device;  ///< "" where all of the folder was flown on one
+    std::string title;   ///< with the folder's name where there are several
+    std::string id;      ///< of the page's elements
     std::vector<results::CellGroup> groups;
     const results::FlightRecord* flight = nullptr;
     std::uint64_t seed = 1;  ///< of the bootstrap

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
+#include "results/deterministic.h"
 #include "results/json.h"
 
 namespace lodbench::report::html {
@@ -45,9 +47,10 @@ std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
     }
     for (const results::CellGroup& group : results::group_cells(folder.cells)) {
         for (const std::string& text : results::disagreements_of(group)) {
-            texts.push_back(fmt::format("{}, {}: {}", group.label, group.scenario, text));
+            texts.push_back(fmt::format("{}, {}: {}", group.label, group.comparison(), text));
         }
     }
+    std::ranges::copy(results::device_differences(folder.cells), std::back_inserter(texts));
     return texts;
 }
 
@@ -66,6 +69,9 @@ std::string conditions_html(const results::ResultFolder& folder) {
                                        : renderer);
     html += definition("Timer", results::member_of(gl, "timer_verdict"));
     html += definition("CPU", run["cpu"]);
+    if (const auto devices = results::devices_of(folder.cells); devices.size() > 1) {
+        for (const std::string& device : devices) html += definition("Device", device);
+    }
     html += definition("lodbench", fmt::format("{}, {}", results::value_text(run["tool_version"]),
                                                results::value_text(run["commit"])));
     return html + "</dl>\n";

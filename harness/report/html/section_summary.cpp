@@ -64,7 +64,7 @@ Table table_of(const ResultSet& set, const char* id, const std::string& caption)
     table.caption = caption;
     table.columns.push_back({"method", "method", false});
     table.results = set.folder->name;
-    table.scenario = set.scenario;
+    table.scenario = set.groups.front().comparison();
     return table;
 }
 

@@ -126,6 +126,7 @@ Setting setting_of(const results::CellRecord& cell) {
     for (const auto& [name, value] : cell.params.values()) {
         setting.params[name] = results::value_text(value);
     }
+    if (!cell.device.empty()) setting.params.emplace("device", cell.device);
     return setting;
 }
 

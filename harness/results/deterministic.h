@@ -1,0 +1,39 @@
+#pragma once
+// Which figures of a cell do not depend on when it was flown, and what of them devices differ in.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "results/cell.h"
+
+namespace lodbench::results {
+
+/// A member of a cell's record that comes out the same each time the cell is flown on one device.
+struct DeterministicField {
+    /// How far another device gives the same.
+    enum class Elsewhere {
+        exactly,  ///< counts and hashes
+        rounded,  ///< measured in float32 pictures and positions: within `kDeviceRounding`
+        never     ///< says nothing of another repetition: what the cell's own seed draws
+    };
+    const char* name;
+    Elsewhere elsewhere;
+};
+
+/// Of the larger value, or of 1 where both are smaller: what the measuring itself is tested to.
+inline constexpr double kDeviceRounding = 1e-3;
+
+/// This is the one list of them. Not in it are times, memory, what an asynchronous method did at
+/// its own pace, and its own counters.
+[[nodiscard]] std::span<const DeterministicField> deterministic_fields();
+
+/// The names of the deterministic fields in which two records differ, to the bit.
+[[nodiscard]] std::vector<std::string> deterministic_differences(const CellRecord& a,
+                                                                 const CellRecord& b);
+
+/// In words, where devices give other figures for one setting: a line for two devices and a field,
+/// with the setting first found. Empty where all was flown on one.
+[[nodiscard]] std::vector<std::string> device_differences(const std::vector<CellRecord>& cells);
+
+}  // namespace lodbench::results

@@ -1,0 +1,443 @@
+#include "results/merge.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <system_error>
+#include <tuple>
+
+#include "api/error.h"
+#include "base/child_process.h"
+#include "base/files.h"
+#include "base/interrupts.h"
+#include "results/cell_groups.h"
+#include "results/folder.h"
+#include "results/json.h"
+#include "results/merge_input.h"
+#include "results/run_folder.h"
+
+namespace lodbench::results {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Keep = base::Keep;
+
+/// The folder beside `out` in which everything is written, and which takes its place at the end.
+class Draft {
+public:
+    explicit Draft(fs::path out) : out_(std::move(out)) {
+        std::error_code error;
+        fs::create_directories(out_.parent_path(), error);
+        std::string pattern =
+            (out_.parent_path() / ("." + out_.filename().string() + ".merging-XXXXXX")).string();
+        if (error || mkdtemp(pattern.data()) == nullptr) refuse(error ? error.value() : errno);
+        path_ = pattern;
+        fs::permissions(path_, fs::perms(0755), error);  // mkdtemp lets nobody else read it
+    }
+    ~Draft() {
+        std::error_code ignored;
+        if (!path_.empty()) fs::remove_all(path_, ignored);
+    }
+    Draft(const Draft&) = delete;
+    Draft& operator=(const Draft&) = delete;
+
+    [[nodiscard]] const fs::path& path() const { return path_; }
+
+    /// Once all is written, and on the disk.
+    void finish() {
+        const base::FileDescriptor folder(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+        if (!folder || syncfs(folder.number()) != 0) refuse(errno);
+        std::error_code error;
+        fs::remove(out_, error);  // an empty folder, or none
+        fs::rename(path_, out_, error);
+        if (error) refuse(error.value());
+        path_.clear();
+    }
+
+private:
+    [[noreturn]] void refuse(int error) const {
+        throw EnvironmentError(
+            fmt::format("cannot make the folder {}: {}; choose another with --out", out_.string(),
+                        std::generic_category().message(error)));
+    }
+    fs::path out_, path_;
+};
+
+void heed_interrupt() {
+    if (base::interrupted()) throw EnvironmentError("interrupted; nothing was written");
+}
+
+std::vector<MergeInput> read_inputs(const std::vector<fs::path>& folders) {
+    std::vector<MergeInput> inputs;
+    for (const fs::path& folder : folders) {
+        heed_interrupt();
+        inputs.push_back(read_merge_input(folder));
+    }
+    // What is taken from the first that has it does not depend on the order of the arguments.
+    std::ranges::sort(inputs, {}, [](const MergeInput& input) {
+        return std::tuple(input.shard(), input.checksum, input.path);
+    });
+    return inputs;
+}
+
+/// A cell of the result, and the folder from which it comes.
+struct Taken {
+    const MergeInput* input = nullptr;
+    const MergeInput::Cell* cell = nullptr;
+    std::string name;  ///< in the result
+};
+
+/// Names the first member in which two records differ.
+[[noreturn]] void refuse_unlike(const MergeInput::Cell& a, const MergeInput::Cell& b) {
+    const Json::Value left = to_json(a.record);
+    const Json::Value right = to_json(b.record);
+    for (const std::string& name : left.getMemberNames()) {
+        if (name == "cell" || left[name] == right[name]) continue;
+        throw InputError(fmt::format(
+            "{} and {}: cell '{}' was flown twice on one device, and '{}' is {} and {}; a cell is "
+            "measured once: leave one of the folders out",
+            a.where, b.where, a.name, name, to_text(left[name]), to_text(right[name])));
+    }
+    throw InputError(
+        fmt::format("{} and {}: cell '{}' has unlike frames; leave one of the folders "
+                    "out",
+                    a.where, b.where, a.name));
+}
+
+bool is_equal(const MergeInput::Cell& a, const MergeInput::Cell& b) {
+    CellRecord left = a.record;
+    CellRecord right = b.record;
+    left.cell = right.cell = a.name;
+    return to_json(left) == to_json(right);
+}
+
+/// Every cell of every device once.
+std::vector<Taken> unite(const std::vector<MergeInput>& inputs) {
+    std::map<std::string, std::map<std::string, Taken>> cells;  // by name and device
+    for (const MergeInput& input : inputs) {
+        for (const MergeInput::Cell& cell : input.cells) {
+            const auto [taken, is_new] =
+                cells[cell.name].try_emplace(cell.record.device, Taken{&input, &cell, cell.name});
+            if (is_new) continue;
+            const MergeInput::Cell& known = *taken->second.cell;
+            if (!is_equal(known, cell)) refuse_unlike(known, cell);
+        }
+    }
+    std::vector<Taken> result;
+    for (auto& [name, devices] : cells) {
+        for (auto& [device, taken] : devices) {
+            if (devices.size() > 1) taken.name = name_on_device(name, device);
+            result.push_back(taken);
+        }
+    }
+    std::ranges::stable_sort(result, {}, [](const Taken& taken) {
+        const Json::Value& planned = taken.input->planned.at(taken.cell->record.cell);
+        return std::tuple(planned["place"].asUInt64(), taken.name);
+    });
+    return result;
+}
+
+/// "cells" of the merged run.json: what is finished, under its name there, and what no folder has
+/// finished.
+Json::Value unite_planned(const std::vector<MergeInput>& inputs, const std::vector<Taken>& taken,
+                          std::size_t& missing) {
+    std::map<std::tuple<std::uint64_t, std::string>, Json::Value> planned;
+    std::set<std::string> finished;
+    const auto add = [&](Json::Value cell, const std::string& name) {
+        cell["id"] = name;
+        planned.emplace(std::tuple(cell["place"].asUInt64(), name), std::move(cell));
+    };
+    for (const Taken& cell : taken) {
+        finished.insert(cell.cell->name);
+        add(cell.input->planned.at(cell.cell->record.cell), cell.name);
+    }
+    const std::size_t done = planned.size();
+    for (const MergeInput& input : inputs) {
+        std::set<std::string> own;  // names that its finished cells bear
+        for (const MergeInput::Cell& cell : input.cells) own.insert(cell.record.cell);
+        for (const auto& [name, cell] : input.planned) {
+            if (!own.contains(name) && !finished.contains(name)) add(cell, name);
+        }
+    }
+    missing = planned.size() - done;
+    Json::Value json = Json::arrayValue;
+    for (auto& [key, cell] : planned) json.append(std::move(cell));
+    return json;
+}
+
+/// What a merged run.json keeps of each folder's: machine, driver, command, shard. Of a folder that
+/// was itself merged, what it kept.
+std::vector<Json::Value> contexts_of(const std::vector<MergeInput>& inputs) {
+    std::vector<Json::Value> contexts;
+    const auto add = [&](Json::Value context) {
+        if (std::ranges::find(contexts, context) == contexts.end()) {
+            contexts.push_back(std::move(context));  // a copy of a folder says nothing new
+        }
+    };
+    for (const MergeInput& input : inputs) {
+        if (input.run["shards"].isArray()) {
+            for (const Json::Value& context : input.run["shards"]) add(context);
+            continue;
+        }
+        Json::Value context = input.run;
+        for (const char* key : {"scenarios", "plugins", "overrides"}) context.removeMember(key);
+        add(std::move(context));
+    }
+    return contexts;
+}
+
+void add_once(Json::Value& list, const Json::Value& words) {
+    if (std::find(list.begin(), list.end(), words) == list.end()) list.append(words);
+}
+
+/// What all have alike stands as in any run.json; what differs is null, and stands in "shards".
+Json::Value unite_runs(const std::vector<MergeInput>& inputs) {
+    Json::Value run = inputs.front().run;
+    for (const MergeInput& input : inputs) {
+        for (const std::string& key : run.getMemberNames()) {
+            if (run[key] != input.run[key]) run[key] = Json::Value::null;
+        }
+    }
+    for (const MergeInput& input : inputs) {  // texts that sort as times do
+        const Json::Value& started = input.run["started"];
+        if (run["started"].isNull() || started < run["started"]) run["started"] = started;
+    }
+    for (const char* key : {"shard", "shards"}) run.removeMember(key);
+    for (const char* key : {"warnings", "noise", "plugins", "scenarios"}) {
+        run[key] = Json::arrayValue;
+    }
+    std::set<std::string> scenarios;
+    for (const MergeInput& input : inputs) {
+        for (const char* key : {"warnings", "noise", "plugins"}) {
+            for (const Json::Value& words : input.run[key]) add_once(run[key], words);
+        }
+        for (const Json::Value& scenario : input.run["scenarios"]) {
+            if (scenarios.insert(scenario["name"].asString()).second) {
+                run["scenarios"].append(scenario);
+            }
+        }
+    }
+    run["shards"] = Json::arrayValue;
+    for (Json::Value& context : contexts_of(inputs)) run["shards"].append(std::move(context));
+    return run;
+}
+
+/// That parts of the campaign are in none of the folders; "" where they all are. `absent` counts
+/// their cells.
+std::string words_on_absent(const Json::Value& run, std::size_t& absent) {
+    std::set<std::uint64_t> places;  // a cell that two devices flew has one
+    for (const Json::Value& cell : run["cells"]) places.insert(cell["place"].asUInt64());
+    const std::uint64_t all = run["campaign_cells"].asUInt64();
+    if (places.size() >= all) return {};
+    absent = std::size_t(all) - places.size();
+    std::map<int, std::set<int>> seen;  // by the number of shards
+    for (const Json::Value& context : run["shards"]) {
+        const Json::Value& shard = context["shard"];
+        if (shard.isNull()) continue;
+        seen[shard["count"].asInt()].insert(shard["number"].asInt());
+    }
+    std::string shards;
+    if (seen.size() == 1) {  // else there is no one list of them
+        const auto& [count, numbers] = *seen.begin();
+        for (int number = 1; number <= count; ++number) {
+            if (numbers.contains(number)) continue;
+            shards += fmt::format("{}{}/{}", shards.empty() ? "" : ", ", number, count);
+        }
+    }
+    return fmt::format("{} of the campaign's {} cells are in none of the merged folders{}", absent,
+                       all, shards.empty() ? "" : ": shards " + shards + " are not among them");
+}
+
+/// The longest name of which a file is one: NAME.* or NAME__*.
+const Taken* owner_of(const std::string& file, const std::map<std::string, const Taken*>& names) {
+    for (std::size_t end = file.size(); end > 0; --end) {
+        if (end < file.size() && file[end] != '.' && file.compare(end, 2, "__") != 0) continue;
+        const auto found = names.find(file.substr(0, end));
+        if (found != names.end()) return found->second;
+    }
+    return nullptr;
+}
+
+void copy_new(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    if (fs::exists(to) || fs::copy_file(from, to, error)) return;
+    throw EnvironmentError(
+        fmt::format("cannot copy {} to {}: {}", from.string(), to.string(), error.message()));
+}
+
+std::vector<fs::path> plain_files(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+        if (!entry.is_symlink() && entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+    return files;
+}
+
+/// Pictures and logs of the folder's cells, under the names that these have in the result.
+void copy_files_of_cells(const MergeInput& input, const std::vector<const Taken*>& taken,
+                         const fs::path& out) {
+    std::map<std::string, const Taken*> names;
+    for (const Taken* cell : taken) names.emplace(cell->cell->record.cell, cell);
+    for (const char* part : {"shots", "logs"}) {
+        for (const fs::path& file : plain_files(input.path / part)) {
+            const std::string name = file.filename().string();
+            const Taken* cell = owner_of(name, names);
+            if (cell == nullptr) continue;
+            const std::string rest = name.substr(cell->cell->record.cell.size());
+            copy_new(file, out / part / (cell->name + rest));
+        }
+    }
+}
+
+/// A cell's frames, which are those that it was written with, and its line.
+std::string write_cell(const Taken& taken, const fs::path& out) {
+    const CellRecord& record = taken.cell->record;
+    if (!record.frames_checksum.empty() || record.status == CellStatus::ok) {
+        const fs::path file = taken.input->path / "frames" / (record.cell + ".csv");
+        expect_plain_file(file);
+        if (!fs::exists(file)) {
+            throw InputError(
+                fmt::format("{}: there is no such file, and {} names its cell: copy the folder "
+                            "again, with its frames",
+                            file.string(), taken.cell->where));
+        }
+        const std::string csv = base::read_text(file);
+        expect_frames(record, csv, file.string());
+        base::write_whole(out / "frames" / (taken.name + ".csv"), csv, Keep::for_now);
+    }
+    if (taken.name == record.cell) return taken.cell->line + "\n";
+    Json::Value json = parse_sealed(taken.cell->line, taken.cell->where);
+    json["cell"] = taken.name;
+    return seal(json) + "\n";
+}
+
+/// Scenarios as run.json has them, and beside them their recorded flights.
+void copy_scenarios(const std::vector<MergeInput>& inputs, const fs::path& out) {
+    std::map<std::string, fs::path> known;
+    for (const MergeInput& input : inputs) {
+        for (const Json::Value& scenario : input.run["scenarios"]) {
+            const std::string file = scenario["name"].asString() + ".toml";
+            const fs::path here = input.path / "scenarios" / file;
+            const std::string text = get_string(scenario, "text", input.where());
+            expect_plain_file(here);
+            if (fs::exists(here) && base::read_text(here) != text) {
+                throw InputError(fmt::format("{}: this is not the text of {}; {}", here.string(),
+                                             input.where(), kCopyAgain));
+            }
+            base::write_whole(out / "scenarios" / file, text, Keep::for_now);
+        }
+        for (const fs::path& file : plain_files(input.path / "scenarios")) {
+            if (file.extension() == ".toml" || file.extension() == ".tmp") continue;
+            const auto [first, is_new] = known.try_emplace(file.filename().string(), file);
+            if (is_new) {
+                copy_new(file, out / "scenarios" / file.filename());
+            } else if (base::read_text(first->second) != base::read_text(file)) {
+                throw InputError(fmt::format("{} and {} differ; {}", first->second.string(),
+                                             file.string(), kCopyAgain));
+            }
+        }
+    }
+}
+
+/// Two processors may round a camera's place otherwise: that is said, and the first is kept.
+void copy_flights(const std::vector<MergeInput>& inputs, const fs::path& out,
+                  std::vector<std::string>& warnings) {
+    std::map<std::string, std::pair<fs::path, std::string>> known;  // with its text's checksum
+    for (const MergeInput& input : inputs) {
+        for (const fs::path& file : plain_files(input.path / "flights")) {
+            const std::string name = file.filename().string();
+            if (name.starts_with('.')) continue;
+            const std::string text = base::read_text(file);
+            if (file.extension() == ".json") (void)parse_sealed(text, file.string());
+            const auto [first, is_new] = known.try_emplace(name, file, checksum_of(text));
+            if (is_new) {
+                copy_new(file, out / "flights" / name);
+            } else if (first->second.second != checksum_of(text)) {
+                warnings.push_back(fmt::format("{} and {} differ; the first is kept",
+                                               first->second.first.string(), file.string()));
+            }
+        }
+    }
+}
+
+fs::path canonical_folder(const fs::path& folder) {
+    const fs::path path = fs::weakly_canonical(fs::absolute(folder));
+    return path.has_filename() ? path : path.parent_path();  // without a slash at the end
+}
+
+/// The place of the result. Throws InputError where it is taken, or lies in a folder to be merged.
+fs::path place_of(const fs::path& out, const std::vector<fs::path>& folders) {
+    const fs::path place = canonical_folder(out);
+    for (const fs::path& folder : folders) {
+        const fs::path input = canonical_folder(folder);
+        const auto [end, ignored] =
+            std::mismatch(input.begin(), input.end(), place.begin(), place.end());
+        if (end != input.end()) continue;
+        throw InputError(
+            fmt::format("--out {}: this is or lies in {}, which is only read; name "
+                        "another folder",
+                        out.string(), folder.string()));
+    }
+    const fs::file_status status = fs::symlink_status(out);
+    if (!fs::exists(status) || (fs::is_directory(status) && fs::is_empty(out))) return place;
+    throw InputError(fmt::format(
+        "--out {}: there is something already; name a new or an empty folder", out.string()));
+}
+
+}  // namespace
+
+MergedRun merge_folders(const std::vector<fs::path>& folders, const fs::path& out,
+                        const std::function<std::string(const MergedRun&)>& summary) {
+    if (folders.empty()) throw InputError("there is no folder to merge; name some");
+    const fs::path place = place_of(out, folders);
+    const std::vector<MergeInput> inputs = read_inputs(folders);
+    expect_one_protocol(inputs);
+    const std::vector<Taken> taken = unite(inputs);
+
+    MergedRun merged;
+    merged.run = unite_runs(inputs);
+    merged.run["cells"] = unite_planned(inputs, taken, merged.missing);
+    for (const MergeInput& input : inputs) {
+        merged.warnings.insert(merged.warnings.end(), input.warnings.begin(), input.warnings.end());
+    }
+    std::size_t absent = 0;
+    if (const std::string words = words_on_absent(merged.run, absent); !words.empty()) {
+        merged.warnings.push_back(words);
+        merged.missing += absent;
+    }
+
+    Draft draft(place);
+    for (const char* part : {"scenarios", "frames", "flights", "logs", "shots"}) {
+        fs::create_directory(draft.path() / part);
+    }
+    copy_scenarios(inputs, draft.path());
+    copy_flights(inputs, draft.path(), merged.warnings);
+    std::string lines;
+    std::map<const MergeInput*, std::vector<const Taken*>> by_input;
+    for (const Taken& cell : taken) {
+        heed_interrupt();
+        lines += write_cell(cell, draft.path());
+        by_input[cell.input].push_back(&cell);
+        merged.cells.push_back(cell.cell->record);
+        merged.cells.back().cell = cell.name;
+    }
+    for (const auto& [input, cells] : by_input) copy_files_of_cells(*input, cells, draft.path());
+    base::write_whole(draft.path() / "cells.jsonl", lines, Keep::for_now);
+    for (const std::string& warning : merged.warnings) add_once(merged.run["warnings"], warning);
+    base::write_whole(draft.path() / "run.json", to_text(merged.run, true) + "\n", Keep::for_now);
+    base::write_whole(draft.path() / "summary.md", summary(merged), Keep::for_now);
+    draft.finish();
+    return merged;
+}
+
+}  // namespace lodbench::results
