@@ -67,8 +67,8 @@ void add_merge(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "merge",
-        "Joins results folders of one campaign, as `run --shard` and `sweep --shard` write them, "
-        "into one. They are only read. Times of different devices are kept apart.");
+        "Join results folders of one campaign, as `run --shard` and `sweep --shard` write them, "
+        "into one; they are only read, and times of different devices are kept apart");
     command->add_option("DIR", options->folders, "results folders")->required();
     command->add_option("--out,-o", options->out, "the new results folder")->required();
     command->callback([options, &status] { status = merge(*options); });

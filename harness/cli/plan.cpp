@@ -145,8 +145,8 @@ void add_plan(CLI::App& app, int& status) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "plan",
-        "Says what `run`, or with --sweep `sweep`, would fly with the same arguments: blocks, "
-        "cells, and the time that they will take. Flies nothing.");
+        "Say what `run`, or with --sweep `sweep`, would fly with the same arguments: blocks, "
+        "cells, and the time that they will take; fly nothing");
     command->add_option("SCENARIO", options->request.scenarios,
                         "scenario files; none: the demo over Puget Sound");
     options->add_request(*command);
