@@ -94,7 +94,7 @@ def cell(name, method="lindstrom", scenario="demo", repetition=0, params=None, t
         "select_ms": summary(time / 10), "submit_ms": summary(time / 20), "gpu_ms": None,
         "cpu_ms": summary(time * 2), "jank_ms": 1.25, "triangles": {"mean": 1234.5 / time, "min": 1, "max": 9},
         "draw_calls": {"mean": 1, "min": 1, "max": 1}, "uploaded_bytes": {"mean": 10, "min": 1, "max": 90},
-        "prepare_s": 0.1 + 0.2, "prepare_cpu_s": 0.4, "prepare_cached": False, "upload_s": 0.01,
+        "prepare_s": 0.1 + 0.2, "prepare_cpu_s": 0.4, "upload_s": 0.01,
         "samples_prepared": 8, "samples_served": 17, "tiles_served": 3, "terrain_bytes_read": 65536, "gpu_bytes": 12345678, "peak_rss_bytes": 98765432, "counters": {},
         "claimed_px": 1.0, "warnings": [], "truth_frames": 3, "economy": None,
         "screen_error_px": {"max": error * 3, "p999": error * 2, "max_covered": error * 2.5},

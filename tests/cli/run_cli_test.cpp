@@ -193,7 +193,6 @@ TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
                 EXPECT_TRUE(cell[count][part].isNumeric()) << count << part;
             }
         }
-        EXPECT_TRUE(cell["prepare_cached"].isBool());
         EXPECT_TRUE(cell["params"].isObject());
         EXPECT_TRUE(cell["counters"].isObject());
         for (const char* errors : {"screen_error_px", "visible_error_px", "pixel_error_px"}) {

@@ -359,7 +359,8 @@ TEST_F(Trade, economy_compares_a_frame_with_what_would_do_at_the_same_error) {
     }
     EXPECT_THAT(text_of(fs::path(out()) / "economy.md"), HasSubstr("| lindstrom "));
     EXPECT_EQ(lodbench("economy", {"--frame", "4", "--out", out("other")}).status, 2);
-    EXPECT_THAT(errors(), HasSubstr("--frame 4: the flight has the frames 0 to 3"));
+    EXPECT_THAT(errors(),
+                HasSubstr("--frame 4: [measure] economy = 4: write whole numbers from 0 to 3"));
 }
 
 TEST_F(Trade, what_needs_the_truth_measures_it_whatever_the_scenario_says) {

@@ -73,7 +73,7 @@ void staleness_benchmark(const Options& options) {
         fmt::print("  {:6.0f}  {:9} | {:>17} {:>8} {:>14.4f} | {:>16} {:>8} | {:>12}\n", behind,
                    *record.triangles, text_of(screen.max), text_of(screen.p999),
                    100 * screen.over_tau.value_or(NAN), text_of(pixel.max), text_of(pixel.p999),
-                   cell.crack_pixels ? cell.crack_pixels->total : 0);
+                   cell.crack_pixels ? cell.crack_pixels->total.value_or(0) : 0);
         std::fflush(stdout);
         stage.resume_background();
     }
