@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <system_error>
@@ -16,19 +15,16 @@
 #include "base/child_process.h"
 #include "base/files.h"
 #include "base/interrupts.h"
-#include "results/cell_groups.h"
 #include "results/folder.h"
 #include "results/json.h"
+#include "results/merge_files.h"
 #include "results/merge_input.h"
-#include "results/run_folder.h"
 
 namespace lodbench::results {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-using Keep = base::Keep;
 
 /// The folder beside `out` in which everything is written, and which takes its place at the end.
 class Draft {
@@ -87,13 +83,6 @@ std::vector<MergeInput> read_inputs(const std::vector<fs::path>& folders) {
     });
     return inputs;
 }
-
-/// A cell of the result, and the folder from which it comes.
-struct Taken {
-    const MergeInput* input = nullptr;
-    const MergeInput::Cell* cell = nullptr;
-    std::string name;  ///< in the result
-};
 
 /// Names the first member in which two records differ.
 [[noreturn]] void refuse_unlike(const MergeInput::Cell& a, const MergeInput::Cell& b) {
@@ -256,120 +245,6 @@ std::string words_on_absent(const Json::Value& run, std::size_t& absent) {
                        all, shards.empty() ? "" : ": shards " + shards + " are not among them");
 }
 
-/// The longest name of which a file is one: NAME.* or NAME__*.
-const Taken* owner_of(const std::string& file, const std::map<std::string, const Taken*>& names) {
-    for (std::size_t end = file.size(); end > 0; --end) {
-        if (end < file.size() && file[end] != '.' && file.compare(end, 2, "__") != 0) continue;
-        const auto found = names.find(file.substr(0, end));
-        if (found != names.end()) return found->second;
-    }
-    return nullptr;
-}
-
-void copy_new(const fs::path& from, const fs::path& to) {
-    std::error_code error;
-    if (fs::exists(to) || fs::copy_file(from, to, error)) return;
-    throw EnvironmentError(
-        fmt::format("cannot copy {} to {}: {}", from.string(), to.string(), error.message()));
-}
-
-std::vector<fs::path> plain_files(const fs::path& folder) {
-    std::vector<fs::path> files;
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-        if (!entry.is_symlink() && entry.is_regular_file()) files.push_back(entry.path());
-    }
-    std::ranges::sort(files);
-    return files;
-}
-
-/// Pictures and logs of the folder's cells, under the names that these have in the result.
-void copy_files_of_cells(const MergeInput& input, const std::vector<const Taken*>& taken,
-                         const fs::path& out) {
-    std::map<std::string, const Taken*> names;
-    for (const Taken* cell : taken) names.emplace(cell->cell->record.cell, cell);
-    for (const char* part : {"shots", "logs"}) {
-        for (const fs::path& file : plain_files(input.path / part)) {
-            const std::string name = file.filename().string();
-            const Taken* cell = owner_of(name, names);
-            if (cell == nullptr) continue;
-            const std::string rest = name.substr(cell->cell->record.cell.size());
-            copy_new(file, out / part / (cell->name + rest));
-        }
-    }
-}
-
-/// A cell's frames, which are those that it was written with, and its line.
-std::string write_cell(const Taken& taken, const fs::path& out) {
-    const CellRecord& record = taken.cell->record;
-    if (!record.frames_checksum.empty() || record.status == CellStatus::ok) {
-        const fs::path file = taken.input->path / "frames" / (record.cell + ".csv");
-        expect_plain_file(file);
-        if (!fs::exists(file)) {
-            throw InputError(
-                fmt::format("{}: there is no such file, and {} names its cell: copy the folder "
-                            "again, with its frames",
-                            file.string(), taken.cell->where));
-        }
-        const std::string csv = base::read_text(file);
-        expect_frames(record, csv, file.string());
-        base::write_whole(out / "frames" / (taken.name + ".csv"), csv, Keep::for_now);
-    }
-    if (taken.name == record.cell) return taken.cell->line + "\n";
-    Json::Value json = parse_sealed(taken.cell->line, taken.cell->where);
-    json["cell"] = taken.name;
-    return seal(json) + "\n";
-}
-
-/// Scenarios as run.json has them, and beside them their recorded flights.
-void copy_scenarios(const std::vector<MergeInput>& inputs, const fs::path& out) {
-    std::map<std::string, fs::path> known;
-    for (const MergeInput& input : inputs) {
-        for (const Json::Value& scenario : input.run["scenarios"]) {
-            const std::string file = scenario["name"].asString() + ".toml";
-            const fs::path here = input.path / "scenarios" / file;
-            const std::string text = get_string(scenario, "text", input.where());
-            expect_plain_file(here);
-            if (fs::exists(here) && base::read_text(here) != text) {
-                throw InputError(fmt::format("{}: this is not the text of {}; {}", here.string(),
-                                             input.where(), kCopyAgain));
-            }
-            base::write_whole(out / "scenarios" / file, text, Keep::for_now);
-        }
-        for (const fs::path& file : plain_files(input.path / "scenarios")) {
-            if (file.extension() == ".toml" || file.extension() == ".tmp") continue;
-            const auto [first, is_new] = known.try_emplace(file.filename().string(), file);
-            if (is_new) {
-                copy_new(file, out / "scenarios" / file.filename());
-            } else if (base::read_text(first->second) != base::read_text(file)) {
-                throw InputError(fmt::format("{} and {} differ; {}", first->second.string(),
-                                             file.string(), kCopyAgain));
-            }
-        }
-    }
-}
-
-/// Two processors may round a camera's place otherwise: that is said, and the first is kept.
-void copy_flights(const std::vector<MergeInput>& inputs, const fs::path& out,
-                  std::vector<std::string>& warnings) {
-    std::map<std::string, std::pair<fs::path, std::string>> known;  // with its text's checksum
-    for (const MergeInput& input : inputs) {
-        for (const fs::path& file : plain_files(input.path / "flights")) {
-            const std::string name = file.filename().string();
-            if (name.starts_with('.')) continue;
-            const std::string text = base::read_text(file);
-            if (file.extension() == ".json") (void)parse_sealed(text, file.string());
-            const auto [first, is_new] = known.try_emplace(name, file, checksum_of(text));
-            if (is_new) {
-                copy_new(file, out / "flights" / name);
-            } else if (first->second.second != checksum_of(text)) {
-                warnings.push_back(fmt::format("{} and {} differ; the first is kept",
-                                               first->second.first.string(), file.string()));
-            }
-        }
-    }
-}
-
 fs::path canonical_folder(const fs::path& folder) {
     const fs::path path = fs::weakly_canonical(fs::absolute(folder));
     return path.has_filename() ? path : path.parent_path();  // without a slash at the end
@@ -432,10 +307,11 @@ MergedRun merge_folders(const std::vector<fs::path>& folders, const fs::path& ou
         merged.cells.back().cell = cell.name;
     }
     for (const auto& [input, cells] : by_input) copy_files_of_cells(*input, cells, draft.path());
-    base::write_whole(draft.path() / "cells.jsonl", lines, Keep::for_now);
+    base::write_whole(draft.path() / "cells.jsonl", lines, base::Keep::for_now);
     for (const std::string& warning : merged.warnings) add_once(merged.run["warnings"], warning);
-    base::write_whole(draft.path() / "run.json", to_text(merged.run, true) + "\n", Keep::for_now);
-    base::write_whole(draft.path() / "summary.md", summary(merged), Keep::for_now);
+    base::write_whole(draft.path() / "run.json", to_text(merged.run, true) + "\n",
+                      base::Keep::for_now);
+    base::write_whole(draft.path() / "summary.md", summary(merged), base::Keep::for_now);
     draft.finish();
     return merged;
 }
