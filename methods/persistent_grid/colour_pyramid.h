@@ -87,16 +87,6 @@ inline ColourLevel half_resolution(const ColourLevel& fine) {
     return coarse;
 }
 
-inline std::vector<ColourLevel> make_pyramid(ColourLevel finest) {
-    std::vector<ColourLevel> levels;
-    levels.push_back(std::move(finest));
-    while (levels.back().columns > 1 || levels.back().rows > 1) {
-        ColourLevel next = half_resolution(levels.back());
-        levels.push_back(std::move(next));
-    }
-    return levels;
-}
-
 /// Five, six and five bits.
 inline std::uint32_t colour_of_16_bits(std::uint32_t colour) {
     const auto channel = [&](int shift, std::uint32_t most) {

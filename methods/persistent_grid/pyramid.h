@@ -43,12 +43,13 @@ inline Level half_resolution(const Level& fine) {
     return coarse;
 }
 
-/// All levels down to one texel.
-inline std::vector<Level> make_pyramid(Level finest) {
-    std::vector<Level> levels;
+/// All levels down to one texel, of heights or of colours.
+template <typename OneLevel>
+std::vector<OneLevel> make_pyramid(OneLevel finest) {
+    std::vector<OneLevel> levels;
     levels.push_back(std::move(finest));
     while (levels.back().columns > 1 || levels.back().rows > 1) {
-        Level next = half_resolution(levels.back());
+        OneLevel next = half_resolution(levels.back());
         levels.push_back(std::move(next));
     }
     return levels;

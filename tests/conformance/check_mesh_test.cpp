@@ -18,8 +18,8 @@ protected:
         const std::string path =
             scenario("synthetic = \"ridged\"\nrows = 9\ncolumns = 9\nspacing = 10",
                      "[40, 40, 1500]", "[40, 40, 1501]", -90);
-        const Outcome made = lodbench("mesh template --set step=1 --before-clipping --scenario " +
-                                      path + " -o " + file("good.ply"));
+        const Outcome made = lodbench("mesh template --set step=1 --before-clipping " + path +
+                                      " -o " + file("good.ply"));
         ASSERT_EQ(made.status, 0) << made.output;
         bytes_ = read_bytes(file("good.ply"));
         ASSERT_EQ(check_mesh(file("good.ply") + " --watertight --covers-terrain").status, 0);

@@ -31,7 +31,7 @@ TEST_F(FullSurface, lindstrom_equals_the_full_grid_as_the_tolerance_goes_to_zero
     const std::string path =
         scenario("synthetic = \"ridged\"\nrows = 100\ncolumns = 129\nspacing = 10",
                  "[600, 500, 800]", "[650, 500, 800]", -90);
-    const std::string common = " --frame 1 --size 64x16384 --scenario " + path + " -o ";
+    const std::string common = " --frame 1 --size 64x16384 " + path + " -o ";
     const Outcome fine =
         lodbench("mesh lindstrom --set culling=false --before-clipping --set tau=0.01" + common +
                  file("fine.ply"));
@@ -41,7 +41,7 @@ TEST_F(FullSurface, lindstrom_equals_the_full_grid_as_the_tolerance_goes_to_zero
         scenario("synthetic = \"ridged\"\nrows = 100\ncolumns = 129\nspacing = 10",
                  "[640, 500, 9000]", "[640, 500, 9001]", -90);
     const Outcome full =
-        lodbench("mesh template --set step=1 --scenario " + above + " -o " + file("full.ply"));
+        lodbench("mesh template --set step=1 " + above + " -o " + file("full.ply"));
     ASSERT_EQ(full.status, 0) << full.output;
     const Outcome checked =
         check_mesh(file("fine.ply") + " --within 0.015 --same-surface " + file("full.ply"));

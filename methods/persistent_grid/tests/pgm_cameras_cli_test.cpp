@@ -37,7 +37,7 @@ TEST_F(MeshTest, pgm_sends_whole_finite_grids_that_share_vertices_from_every_cam
     for (std::size_t frame = 0; frame < std::size(kNames); ++frame) {
         const Outcome made =
             lodbench(fmt::format("mesh pgm --before-clipping --set grid=60 --set aspect=1.3333 "
-                                 "--frame {} --scenario {} -o {}",
+                                 "--frame {} {} -o {}",
                                  frame, file("cameras.toml"), file("m.ply")));
         ASSERT_EQ(made.status, 0) << kNames[frame] << ": " << made.output;
         EXPECT_NE(read_bytes(file("m.ply")).find(count), std::string::npos)
