@@ -58,10 +58,10 @@ std::string setting_of(const CellRecord& cell, const SweptNames& swept) {
     return setting;
 }
 
-/// In words, where the cells that have `read` of it do not agree.
+/// In words, where the cells that have `read` of it do not agree, and what that means.
 template <typename Read>
 void add_disagreement(std::vector<std::string>& texts, const std::vector<const CellRecord*>& cells,
-                      const char* words, const Read& read) {
+                      const char* words, const char* meaning, const Read& read) {
     const CellRecord* first = nullptr;
     for (const CellRecord* cell : cells) {
         const auto value = read(*cell);
@@ -70,9 +70,8 @@ void add_disagreement(std::vector<std::string>& texts, const std::vector<const C
         const auto expected = read(*first);
         if (*value == *expected) continue;
         texts.push_back(fmt::format(
-            "{} differ between repetitions: {} in repetition {}, {} in repetition {}; its "
-            "figures are those of more than one picture",
-            words, *expected, first->repetition, *value, cell->repetition));
+            "{} differ between repetitions: {} in repetition {}, {} in repetition {}; {}", words,
+            *expected, first->repetition, *value, cell->repetition, meaning));
         return;
     }
 }
@@ -100,15 +99,19 @@ std::vector<std::string> disagreements_of(const CellGroup& group) {
         {of<&Cell::triangles, &CountSummary::min>, "the least triangles of a frame"},
         {of<&Cell::triangles, &CountSummary::max>, "the most triangles of a frame"},
         {of<&Cell::draw_calls, &CountSummary::mean>, "draw calls a frame"},
-        {of<&Cell::samples_prepared>, "samples asked for in preparation"},
     };
+    constexpr const char* kTwoPictures = "its figures are those of more than one picture";
     std::vector<std::string> texts;
     for (const Lockstep& lockstep : kLockstep) {
-        add_disagreement(texts, group.good, lockstep.words, lockstep.figure);
+        add_disagreement(texts, group.good, lockstep.words, kTwoPictures, lockstep.figure);
     }
-    add_disagreement(texts, group.good, "hashes of the depth images", [](const CellRecord& cell) {
-        return cell.shots_hash.empty() ? std::nullopt : std::optional(cell.shots_hash);
-    });
+    add_disagreement(
+        texts, group.good, "hashes of the depth images", kTwoPictures, [](const CellRecord& cell) {
+            return cell.shots_hash.empty() ? std::nullopt : std::optional(cell.shots_hash);
+        });
+    add_disagreement(texts, group.good, "samples asked for in preparation",
+                     "it keeps what it prepared, and its preparing is not timed anew in each",
+                     of<&Cell::samples_prepared>);
     return texts;
 }
 
