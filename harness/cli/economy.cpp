@@ -26,10 +26,7 @@ struct Options : CampaignOptions {
     std::vector<int> frames;
 };
 
-template <typename Value>
-std::string text_of(const std::optional<Value>& value, const char* format) {
-    return value ? fmt::format(fmt::runtime(format), *value) : "-";
-}
+using report::text_of;
 
 void add_fewest(std::vector<std::string>& line, const std::optional<results::FewestFigures>& at) {
     const results::FewestFigures fewest = at.value_or(results::FewestFigures());

@@ -16,6 +16,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/terrain_options.h"
+#include "results/cell_groups.h"
 #include "run/exit_status.h"
 #include "run/locations.h"
 #include "run/mesh_export.h"
@@ -84,16 +85,6 @@ run::Settings settings_of(const MeshOptions& options, const scenario::Scenario& 
     return settings;
 }
 
-std::string text_of(const ParamValue& value) {
-    struct {
-        std::string operator()(bool flag) const { return flag ? "true" : "false"; }
-        std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
-        std::string operator()(double number) const { return fmt::format("{}", number); }
-        std::string operator()(const std::string& text) const { return text; }
-    } writer;
-    return std::visit(writer, value);
-}
-
 /// Flies to the frame in lockstep, as a method may keep state from frame to frame, and writes the
 /// file. Returns what is to be printed.
 std::string export_mesh(const MeshOptions& options, const scenario::Scenario& scenario,
@@ -133,7 +124,7 @@ std::string export_mesh(const MeshOptions& options, const scenario::Scenario& sc
     context.method_version = method.version;
     context.scenario = scenario.name;
     for (const auto& [name, value] : stage.params().values()) {
-        context.params.emplace_back(name, text_of(value));
+        context.params.emplace_back(name, results::value_text(value));
     }
     context.terrain = terrain->info();
     context.frame = options.frame;

@@ -21,10 +21,6 @@ constexpr double kTie = 0.05;       // ratio of frame times: one flight says no 
 constexpr double kExactPx = 0.02;   // below it what is drawn is the terrain: rounding of float32
 constexpr double kKept = 1 + 1e-3;  // of a claimed bound: float32 positions and depths
 
-std::string text_of(const std::optional<double>& value, const char* format) {
-    return value ? fmt::format(fmt::runtime(format), *value) : "-";
-}
-
 std::string px(double value) {
     return fmt::format("{:.3g} px", value);
 }

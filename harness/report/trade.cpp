@@ -52,10 +52,6 @@ std::vector<TradePoint> points_of(std::span<const TradeRow> rows) {
     return points;
 }
 
-std::string text_of(const std::optional<double>& value, const char* format, double unit = 1) {
-    return value ? fmt::format(fmt::runtime(format), *value / unit) : "-";
-}
-
 /// One scenario's table, its heading above it and its failures below.
 std::string scenario_text(std::span<const TradeRow> rows, results::ErrorMetric metric) {
     std::string text = fmt::format("## {}\n\n", rows.front().scenario);

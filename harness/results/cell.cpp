@@ -115,10 +115,6 @@ Json::Value to_json(const CellRecord& cell) {
     return encode(cell);
 }
 
-Json::Value to_json(const Params& params) {
-    return encode(params);
-}
-
 CellRecord read_cell(const Json::Value& json, const std::string& where) {
     CellRecord cell = read_record<CellRecord>(json, where);
     expect_file_name(cell.cell, "cell", where);

@@ -162,7 +162,6 @@ void add_truth(CellRecord& cell, const measure::TruthSummary& truth);
 /// what is not one.
 [[nodiscard]] CellRecord read_cell(const Json::Value& json, const std::string& where);
 [[nodiscard]] Json::Value to_json(const CellRecord& cell);
-[[nodiscard]] Json::Value to_json(const Params& params);
 
 }  // namespace lodbench::results
 

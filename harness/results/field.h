@@ -4,9 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstring>
-#include <functional>
 #include <optional>
 #include <string>
 #include <tuple>

@@ -352,6 +352,25 @@ void put(const std::string& path, const Overrides::Value& value, toml::table& ta
     parsed.get("value")->visit([&](auto& node) { at->insert_or_assign(rest, std::move(node)); });
 }
 
+/// The frames that the file names, and no override does, to where they are in a flight of as many
+/// frames as `frames` says. `as_written` reads the scenario, which may take a recorded flight's
+/// time: where there is something to move.
+template <typename Read>
+void move_named_frames(toml::table& table, const Overrides& overrides,
+                       const Overrides::Value& frames, const Read& as_written) {
+    const auto to =
+        terrain::parse_toml_value(frames.toml, frames.where)["value"].value<std::int64_t>();
+    const bool named = table["measure"]["shots"] || table["measure"]["economy"];
+    if (!to || !named) return;
+    const Scenario written = as_written();
+    const auto move = [&](const char* key, const std::vector<int>& list) {
+        if (list.empty() || overrides.has(key)) return;
+        put(key, {moved_frames(list, written.frames, *to), frames.where}, table);
+    };
+    move("measure.shots", written.measure.shots);
+    move("measure.economy", written.measure.economy);
+}
+
 Scenario read_scenario(const toml::table& table, std::string_view text,
                        const std::filesystem::path& file, const std::filesystem::path& kept) {
     const std::filesystem::path folder = file.parent_path();
@@ -379,20 +398,12 @@ Scenario read_scenario(const toml::table& table, std::string_view text,
 Scenario parse_scenario(std::string_view text, const std::filesystem::path& file,
                         const std::filesystem::path& kept, const Overrides& overrides) {
     toml::table table = terrain::parse_toml(text, file);
-    Overrides all = overrides;
     if (const auto frames = overrides.values().find("flight.frames");
         frames != overrides.values().end()) {
-        const Scenario written = read_scenario(table, text, file, kept);
-        const auto& [toml, where] = frames->second;
-        const auto to = terrain::parse_toml_value(toml, where)["value"].value<std::int64_t>();
-        const auto move = [&](const char* key, const std::vector<int>& named) {
-            if (named.empty() || !to || overrides.has(key)) return;
-            all.set(key, moved_frames(named, written.frames, *to), where);
-        };
-        move("measure.shots", written.measure.shots);
-        move("measure.economy", written.measure.economy);
+        move_named_frames(table, overrides, frames->second,
+                          [&] { return read_scenario(table, text, file, kept); });
     }
-    for (const auto& [path, value] : all.values()) put(path, value, table);
+    for (const auto& [path, value] : overrides.values()) put(path, value, table);
     Scenario scenario = read_scenario(table, text, file, kept);
     if (scenario.terrain.out_of_core && scenario.measure.truth &&
         !scenario.measure.economy.empty()) {
