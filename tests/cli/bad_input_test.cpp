@@ -90,9 +90,8 @@ const std::string kRamp = "synthetic = \"ramp\"";
 TEST_F(BadInput, unknown_keys_name_the_known_ones) {
     expect_run_refused(scenario(kRamp, "[camera]\nfov = 3\n"),
                        "s.toml:9: [camera] \"fov\" is not a key of a scenario; known: ");
-    expect_run_refused(
-        scenario(kRamp, "[[method]]\nid = \"lindstrom\"\nnope = 3\n"),
-        "s.toml:8: method 'lindstrom' has no parameter 'nope'; known: ", "lindstrom");
+    expect_run_refused(scenario(kRamp, "[[method]]\nid = \"refined\"\nnope = 3\n"),
+                       "s.toml:8: method 'refined' has no parameter 'nope'; known: ", "refined");
     write("a.raw", "12345678");
     write("a.raw.toml", "rows = 2\ncolumns = 2\nendain = \"big\"\n");
     expect_refused({"terrain", "info", "a.raw"}, "a.raw.toml:3: unknown key \"endain\"; known: ");
@@ -111,9 +110,9 @@ TEST_F(BadInput, wrong_types_and_values_out_of_range_name_key_value_and_range) {
                        "s.toml:9: [camera] near = nan: not a finite number; ");
     expect_run_refused(scenario(kRamp, "[viewport]\nwidth = 99999999999\n"),
                        "s.toml:9: [viewport] width = ");
-    expect_run_refused(
-        scenario(kRamp, "[[method]]\nid = \"lindstrom\"\ntau = -1\n"),
-        "s.toml:8: '-1' is no value for parameter 'tau' of method 'lindstrom'; give ", "lindstrom");
+    expect_run_refused(scenario(kRamp, "[[method]]\nid = \"refined\"\ntau = -1\n"),
+                       "s.toml:8: '-1' is no value for parameter 'tau' of method 'refined'; give ",
+                       "refined");
     write("a.raw", "12345678");
     write("a.raw.toml", "rows = 2\ncolumns = -2\n");
     expect_refused({"terrain", "info", "a.raw"}, "a.raw.toml:2: columns = -2; it must lie in ");
@@ -152,11 +151,11 @@ TEST_F(BadInput, text_that_strains_the_parser_is_refused_at_its_line) {
 TEST_F(BadInput, sweeps_without_measure_are_refused_before_they_are_made) {
     std::string values = "[0";
     for (int i = 1; i < 1000; ++i) values += "," + std::to_string(i);
-    const std::string sweep = "[[method]]\nid = \"lindstrom\"\na = " + values + "]\nb = " + values +
+    const std::string sweep = "[[method]]\nid = \"refined\"\na = " + values + "]\nb = " + values +
                               "]\n[run]\nrepetitions = 1\n";
-    expect_run_refused(
-        scenario(kRamp, sweep),
-        "s.toml:8: the lists of method 'lindstrom' and 1 repetitions make more than ", "lindstrom");
+    expect_run_refused(scenario(kRamp, sweep),
+                       "s.toml:8: the lists of method 'refined' and 1 repetitions make more than ",
+                       "refined");
 }
 
 TEST_F(BadInput, rasters_that_make_no_surface_are_refused) {

@@ -169,10 +169,10 @@ TEST(BrokenPlugins, that_hang_in_an_exit_handler_keep_the_result_that_was_writte
 TEST(BrokenPlugins, that_hang_cost_a_mesh_its_time_limit) {
     const ScratchFolder folder;
     const fs::path out = folder.path() / "loops.ply";
-    const Finished finished = run_lodbench(
-        {"mesh", "loops", tiny_scenario(folder.path(), "").string(), "--plugin-dir",
-         broken_plugin_folder("loops"), "--out", out.string(), "--time-limit", "3"},
-        folder.path());
+    const Finished finished =
+        run_lodbench({"mesh", "loops", tiny_scenario(folder.path(), "").string(), "--plugin-dir",
+                      broken_plugin_folder("loops"), "--out", out.string(), "--time-limit", "3"},
+                     folder.path());
     EXPECT_EQ(finished.status, 3) << finished.output;
     EXPECT_THAT(finished.output, HasSubstr("gave no answer within 3 s, in draw"));
     EXPECT_FALSE(fs::exists(out));

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "results/cell_groups.h"
-#include "support/run_lodbench.h"
 #include "scenario/scenario.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {

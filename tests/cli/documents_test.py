@@ -4,6 +4,7 @@ usage: documents_test.py SOURCE_DIR LODBENCH_BINARY
 """
 
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -14,6 +15,7 @@ import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1)).resolve()
 BINARY = str(pathlib.Path(sys.argv.pop(1)).resolve())
+STAND_INS = str(pathlib.Path(BINARY).parents[1] / "broken-plugins/stand_ins")
 PAGES = {path: path.read_text() for path in
          [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *sorted((SOURCE / "docs").glob("*.md"))]}
 
@@ -99,10 +101,11 @@ class Documents(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             (folder / "s.toml").write_text(scenario)
-            for command in (["sweep", "s.toml", "--method", "lindstrom", "--method", "full-grid", "--points", "3"],
+            for command in (["sweep", "s.toml", "--method", "refined", "--method", "every-sample", "--points", "3"],
                             ["report", "sweep", "--csv", "tables"]):
                 out = ["-o", "sweep" if command[0] == "sweep" else "page.html"]
-                done = subprocess.run([BINARY, *command, *out], cwd=folder, capture_output=True, text=True)
+                done = subprocess.run([BINARY, *command, *out], cwd=folder, capture_output=True, text=True,
+                                      env={**os.environ, "LODBENCH_PLUGIN_PATH": STAND_INS})
                 self.assertEqual(done.returncode, 0, done.stderr)
             snippets = re.findall(r"^```(python|gnuplot)\n(.*?)^```", page("docs/results.md"), re.MULTILINE | re.DOTALL)
             self.assertEqual(sorted(language for language, _ in snippets), ["gnuplot", "python", "python"])
@@ -117,7 +120,7 @@ class Documents(unittest.TestCase):
                     done = subprocess.run(program, input=code, cwd=folder, capture_output=True, text=True)
                     self.assertEqual((done.returncode, done.stderr), (0, ""))
                     if language == "python":
-                        self.assertIn("full-grid", done.stdout)
+                        self.assertIn("every-sample", done.stdout)
                     else:
                         self.assertIn("</svg>", (folder / "error.svg").read_text())
 

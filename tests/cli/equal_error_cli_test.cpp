@@ -35,12 +35,12 @@ protected:
     }
     ScratchFolder folder_;
     /// Within 5 %, as `lodbench match --error 2px` finds it.
-    std::string more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nlindstrom = 1.5\nmoon = 3\n";
+    std::string more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nrefined = 1.5\nmoon = 3\n";
 };
 
 TEST_F(EqualError, methods_fly_at_the_kept_values_unless_something_sets_them) {
     const auto tau = [&](const std::string& name, const Arguments& more) {
-        Arguments arguments = {"--method", "lindstrom", "--out", out(name)};
+        Arguments arguments = {"--method", "refined", "--out", out(name)};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Finished finished = lodbench("run", arguments);
         EXPECT_EQ(finished.status, 0) << finished.output;
@@ -49,17 +49,17 @@ TEST_F(EqualError, methods_fly_at_the_kept_values_unless_something_sets_them) {
         return cells_of(out(name)).front()["params"]["tau"].asDouble();
     };
     EXPECT_EQ(tau("kept", {}), 1.5);
-    EXPECT_EQ(tau("set", {"--set", "lindstrom.tau=3"}), 3);
-    more_ += "[[method]]\nid = \"lindstrom\"\ntau = 4\n";
+    EXPECT_EQ(tau("set", {"--set", "refined.tau=3"}), 3);
+    more_ += "[[method]]\nid = \"refined\"\ntau = 4\n";
     EXPECT_EQ(tau("written", {}), 4);
 }
 
 TEST_F(EqualError, run_prints_the_comparison_and_summary_md_holds_it_with_the_whole_table) {
     const Finished finished =
-        lodbench("run", {"--method", "lindstrom", "--method", "full-grid", "--out", out()});
+        lodbench("run", {"--method", "refined", "--method", "every-sample", "--out", out()});
     EXPECT_THAT(finished.output,
                 AllOf(HasSubstr("## small: what methods cost at the same measured error"),
-                      HasSubstr("| full-grid "), Not(HasSubstr("fps (range)"))));
+                      HasSubstr("| every-sample "), Not(HasSubstr("fps (range)"))));
     EXPECT_THAT(text_of(fs::path(out()) / "summary.md"),
                 AllOf(HasSubstr("## small: what methods cost at"), HasSubstr("fps (range)")));
     const fs::path page = fs::path(out()) / "report.html";
@@ -68,8 +68,7 @@ TEST_F(EqualError, run_prints_the_comparison_and_summary_md_holds_it_with_the_wh
             .status,
         0);
     EXPECT_THAT(text_of(page), HasSubstr(">At equal error</h3>"));
-    EXPECT_THAT(text_of(fs::path(out("csv")) / "equal_error.csv"),
-                HasSubstr("lindstrom,tau = 1.5,"));
+    EXPECT_THAT(text_of(fs::path(out("csv")) / "equal_error.csv"), HasSubstr("refined,tau = 1.5,"));
     // Whole again from what the folder holds.
     fs::remove(fs::path(out()) / "summary.md");
     EXPECT_EQ(run_lodbench({"run", "--resume", "--out", out()}, folder_.path()).status, 0);
@@ -79,11 +78,11 @@ TEST_F(EqualError, run_prints_the_comparison_and_summary_md_holds_it_with_the_wh
 
 TEST_F(EqualError, errors_that_are_not_measured_or_not_those_kept_are_not_compared) {
     const Finished finished =
-        lodbench("run", {"--method", "lindstrom", "--no-truth", "--out", out()});
+        lodbench("run", {"--method", "refined", "--no-truth", "--out", out()});
     EXPECT_EQ(finished.status, 0) << finished.output;
     EXPECT_THAT(finished.output, AllOf(HasSubstr("fps (range)"), Not(HasSubstr("## small"))));
     for (const char* command : {"match", "sweep"}) {
-        Arguments arguments = {"--method", "lindstrom", "--out", out(command)};
+        Arguments arguments = {"--method", "refined", "--out", out(command)};
         if (std::string(command) == "match") arguments.insert(arguments.end(), {"--error", "8px"});
         ASSERT_EQ(lodbench(command, arguments).status, 0) << command;
         EXPECT_THAT(text_of(fs::path(out(command)) / "summary.md"), Not(HasSubstr("## small")))
@@ -93,9 +92,9 @@ TEST_F(EqualError, errors_that_are_not_measured_or_not_those_kept_are_not_compar
 
 TEST_F(EqualError, match_begins_at_the_kept_value_and_sweep_at_the_default) {
     const auto probes = [&](const std::string& name) {
-        EXPECT_EQ(lodbench("match", {"--error", "2px", "--method", "lindstrom", "--out", out(name)})
-                      .status,
-                  0);
+        EXPECT_EQ(
+            lodbench("match", {"--error", "2px", "--method", "refined", "--out", out(name)}).status,
+            0);
         const Json::Value match =
             results::parse_sealed(text_of(fs::path(out(name)) / "match.json"), "match");
         EXPECT_EQ(match["methods"][0]["outcome"], "met");
@@ -104,38 +103,38 @@ TEST_F(EqualError, match_begins_at_the_kept_value_and_sweep_at_the_default) {
     const Json::Value first = probes("far");
     EXPECT_EQ(first["probes"][0][0].asDouble(), 1.5);
     const double found = first["knob_value"].asDouble();
-    more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nlindstrom = " + std::to_string(found) + "\n";
+    more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nrefined = " + std::to_string(found) + "\n";
     EXPECT_EQ(probes("near")["probes"].size(), 1U) << "what was found is kept true by one flight";
     ASSERT_EQ(
-        lodbench("sweep", {"--method", "lindstrom", "--points", "1", "--out", out("sweep")}).status,
+        lodbench("sweep", {"--method", "refined", "--points", "1", "--out", out("sweep")}).status,
         0);
     EXPECT_EQ(cells_of(out("sweep")).front()["params"]["tau"].asDouble(), 1);
 }
 
 TEST_F(EqualError, a_value_that_does_not_fit_is_refused_with_its_line) {
-    more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nlindstrom = \"fine\"\n";
-    Finished refused = lodbench("run", {"--method", "lindstrom", "--out", out()});
+    more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nrefined = \"fine\"\n";
+    Finished refused = lodbench("run", {"--method", "refined", "--out", out()});
     EXPECT_EQ(refused.status, 2);
     EXPECT_THAT(refused.output, AllOf(HasSubstr("small.toml:29: "), HasSubstr("tau")));
-    more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nfull-grid = 2\n";
-    refused = lodbench("run", {"--method", "full-grid", "--out", out()});
+    more_ = "[equal]\nerror_px = 2\n[equal.knobs]\nevery-sample = 2\n";
+    refused = lodbench("run", {"--method", "every-sample", "--out", out()});
     EXPECT_EQ(refused.status, 2);
-    EXPECT_THAT(refused.output, HasSubstr("small.toml:29: method 'full-grid' has no quality knob"));
+    EXPECT_THAT(refused.output,
+                HasSubstr("small.toml:29: method 'every-sample' has no quality knob"));
     EXPECT_FALSE(fs::exists(out()));
 }
 
 TEST_F(EqualError, a_mesh_is_that_of_the_kept_value) {
     const auto vertices = [&](const std::string& name, const Arguments& more) {
-        Arguments arguments = {
-            "mesh",    "lindstrom", (folder_.path() / "small.toml").string(),
-            "--frame", "3",         "-o",         out(name),
-            "--json"};
+        Arguments arguments = {"mesh",    "refined", (folder_.path() / "small.toml").string(),
+                               "--frame", "3",       "-o",
+                               out(name), "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Finished finished = run_lodbench(arguments, folder_.path());
         EXPECT_EQ(finished.status, 0) << finished.output;
         return finished.output;
     };
-    EXPECT_EQ(lodbench("run", {"--method", "full-grid", "--out", out()}).status,
+    EXPECT_EQ(lodbench("run", {"--method", "every-sample", "--out", out()}).status,
               0);  // writes the file
     EXPECT_EQ(vertices("kept.ply", {}), vertices("set.ply", {"--set", "tau=1.5"}));
     EXPECT_NE(vertices("kept.ply", {}), vertices("other.ply", {"--set", "tau=9"}));

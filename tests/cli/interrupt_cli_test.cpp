@@ -29,7 +29,7 @@ protected:
 
     [[nodiscard]] Arguments command(const std::string& name, const Arguments& more) const {
         Arguments arguments = {name, tiny_scenario(scratch_.path(), "repetitions = 3\n").string(),
-                               "--method", "lindstrom"};
+                               "--method", "refined"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }

@@ -40,15 +40,15 @@ protected:
 };
 
 TEST_F(Kills, run_goes_on_to_the_same_cells) {
-    expect_same_cells("run", {"--method", "template", "--method", "lindstrom"}, "summary.md");
+    expect_same_cells("run", {"--method", "template", "--method", "refined"}, "summary.md");
 }
 
 TEST_F(Kills, sweep_goes_on_to_the_same_cells) {
-    expect_same_cells("sweep", {"--method", "lindstrom", "--points", "3"}, "trade.md");
+    expect_same_cells("sweep", {"--method", "refined", "--points", "3"}, "trade.md");
 }
 
 TEST_F(Kills, match_goes_on_to_the_same_cells_and_the_same_search) {
-    expect_same_cells("match", {"--method", "lindstrom", "--triangles", "100", "--probes", "5"},
+    expect_same_cells("match", {"--method", "refined", "--triangles", "100", "--probes", "5"},
                       "match.md");
     EXPECT_EQ(text_of(out("killed") / "match.json"), text_of(out("undisturbed") / "match.json"));
 }

@@ -54,7 +54,7 @@ repetitions = 3
 TEST(Merge, of_shards_gives_the_deterministic_fields_of_an_unsharded_run_to_the_bit) {
     const ScratchFolder folder;
     std::vector<std::string> command = {"run", ridged_scenario(folder.path()).string()};
-    for (const char* method : {"template", "lindstrom", "full-grid"}) {
+    for (const char* method : {"template", "refined", "every-sample"}) {
         command.insert(command.end(), {"--method", method});
     }
     const auto fly = [&](std::vector<std::string> more) {
@@ -100,7 +100,7 @@ TEST(Merge, of_shards_gives_the_deterministic_fields_of_an_unsharded_run_to_the_
         {"report", (folder.path() / "merged").string(), "--out", page.string()}, folder.path());
     EXPECT_EQ(report.status, 0) << report.output;
     EXPECT_THAT(text_of(page), HasSubstr("ridged"));
-    EXPECT_THAT(text_of(folder.path() / "merged/summary.md"), HasSubstr("| lindstrom |"));
+    EXPECT_THAT(text_of(folder.path() / "merged/summary.md"), HasSubstr("| refined |"));
 
     const Finished resumed = run_lodbench(
         {"run", "--resume", "--out", (folder.path() / "merged").string()}, folder.path());
@@ -114,7 +114,7 @@ TEST(Merge, of_two_devices_keeps_them_apart_in_tables_fronts_and_plots) {
     std::vector<std::string> merge = {"merge", "--out", (folder.path() / "out").string()};
     for (const char* number : {"1", "2"}) {
         const fs::path out = folder.path() / number;
-        ASSERT_EQ(run_lodbench({"run", scenario, "--method", "template", "--method", "full-grid",
+        ASSERT_EQ(run_lodbench({"run", scenario, "--method", "template", "--method", "every-sample",
                                 "--shard", std::string(number) + "/2", "--out", out.string()},
                                folder.path())
                       .status,

@@ -24,9 +24,9 @@ TEST(CommandLine, names_the_word_that_is_no_command_and_the_commands) {
 
 TEST(CommandLine, a_repeatable_option_leaves_what_follows_its_value_alone) {
     const ScratchFolder folder;
-    const std::string plugins = LODBENCH_PLUGINS;
+    const std::string plugins = broken_plugin_folder("healthy");
     const Finished described =
-        run_lodbench({"describe", "--plugin-dir", plugins, "full-grid"}, folder.path());
+        run_lodbench({"describe", "--plugin-dir", plugins, "every-sample"}, folder.path());
     EXPECT_EQ(described.status, 0) << described.output;
     const std::string out = (folder.path() / "m.ply").string();
     const Finished mesh =
@@ -49,7 +49,7 @@ TEST(CommandLine, a_setting_without_a_method_is_of_the_one_that_is_asked_for) {
     EXPECT_EQ(one.status, 0) << one.output;
     EXPECT_EQ(cells_of(folder.path() / "one").at(0)["cell"], "template__step=4__tiny__r0");
     for (const std::vector<std::string>& methods :
-         {std::vector<std::string>{}, {"--method", "template", "--method", "full-grid"}}) {
+         {std::vector<std::string>{}, {"--method", "template", "--method", "every-sample"}}) {
         const Finished many = run("many", methods);
         EXPECT_EQ(many.status, 2);
         EXPECT_THAT(many.output, HasSubstr("--set step=4: of which method? Write METHOD.step=4"));
@@ -66,7 +66,7 @@ TEST(CommandLine, an_unknown_method_is_refused_alike_by_every_command) {
         EXPECT_EQ(finished.status, 2);
         // Which methods there are is no business of this test.
         EXPECT_THAT(finished.output, HasSubstr("no method 'nope' was found; known: "));
-        EXPECT_THAT(finished.output, HasSubstr("full-grid, "));
+        EXPECT_THAT(finished.output, HasSubstr("every-sample, "));
         EXPECT_THAT(finished.output, HasSubstr(", template"));
     }
 }
@@ -78,7 +78,7 @@ TEST(CommandLine, values_that_no_measurement_can_use_are_refused_before_any_flig
     std::ofstream(folder.path() / "hill.asc")
         << "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n";
     const std::string hill = (folder.path() / "hill.asc").string();
-    const std::string long_value = "pgm.aspect=1." + std::string(300, '0');
+    const std::string long_value = "strided.uncovered=0." + std::string(300, '0');
     struct {
         std::vector<std::string> arguments;
         const char* words;
@@ -88,9 +88,10 @@ TEST(CommandLine, values_that_no_measurement_can_use_are_refused_before_any_flig
          "expected a number of percent"},
         {{"validate", "--time-factor", "nan", "x.so"}, "expected a finite number"},
         {{"validate", "--time-limit", "inf", "x.so"}, "expected a finite number above 0"},
-        {{"mesh", "pgm", "--time-limit", "0", "--out", out}, "expected a finite number above 0"},
+        {{"mesh", "strided", "--time-limit", "0", "--out", out},
+         "expected a finite number above 0"},
         {{"run", scenario, "--repeat", "1001", "--out", out}, "1 to 1000"},
-        {{"run", scenario, "--method", "pgm", "--set", long_value, "--out", out},
+        {{"run", scenario, "--method", "strided", "--set", long_value, "--out", out},
          "write shorter values"},
     };
     for (const auto& [arguments, words] : refused) {
@@ -131,7 +132,7 @@ TEST(Resume, refuses_arguments_that_contradict_the_run_and_takes_the_same_again)
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "repetitions = 1\n").string();
     const std::string out = (folder.path() / "out").string();
-    const std::vector<std::string> began = {"run", scenario, "--method", "full-grid", "--out", out};
+    const std::vector<std::string> began = {"run", scenario, "--method", "refined", "--out", out};
     ASSERT_EQ(run_lodbench(began, folder.path()).status, 0);
     const auto again = [&](std::vector<std::string> more) {
         std::vector<std::string> arguments = began;
@@ -142,8 +143,8 @@ TEST(Resume, refuses_arguments_that_contradict_the_run_and_takes_the_same_again)
     EXPECT_EQ(again({}).status, 0);
     for (const std::vector<std::string>& more : {std::vector<std::string>{"--frames", "1"},
                                                  {"--seed", "7"},
-                                                 {"--method", "pgm"},
-                                                 {"--set", "full-grid.tile_samples=100"},
+                                                 {"--method", "strided"},
+                                                 {"--set", "refined.tau=100"},
                                                  {"--repeat", "2"},
                                                  {"--size", "8x8"}}) {
         const Finished finished = again(more);
@@ -158,7 +159,7 @@ TEST(OutputFile, a_missing_folder_is_named_and_what_is_no_regular_file_stays) {
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "").string();
     const auto mesh = [&](const std::string& out) {
-        return run_lodbench({"mesh", "full-grid", scenario, "-o", out}, folder.path());
+        return run_lodbench({"mesh", "every-sample", scenario, "-o", out}, folder.path());
     };
     const Finished missing = mesh((folder.path() / "none" / "m.ply").string());
     EXPECT_EQ(missing.status, 4);

@@ -9,8 +9,8 @@
 #include <csignal>
 
 #include "api/method.h"
-#include "support/run_lodbench.h"
 #include "report/table.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::test {
 namespace {
@@ -48,13 +48,12 @@ protected:
 };
 
 TEST_F(PluginCli, one_of_plugin_dir_is_used_in_the_place_of_lodbench_s_own_and_that_is_told) {
-    const Finished finished =
-        run_lodbench(command("takes_an_id", "static-patches"), scratch_.path());
+    const Finished finished = run_lodbench(command("takes_an_id", "refined"), scratch_.path());
     ASSERT_EQ(finished.status, 0) << finished.output;
     const std::string theirs = broken_plugin_folder("takes_an_id") + "/takes_an_id.so";
-    const std::string ours = LODBENCH_PLUGINS "/hybrid_patches.so";
+    const std::string ours = broken_plugin_folder("stand_ins") + "/stand_ins.so";
     const std::string words = fmt::format(
-        "method 'static-patches' is held by two plugins: {} is used, for its folder goes first; {} "
+        "method 'refined' is held by two plugins: {} is used, for its folder goes first; {} "
         "is not; remove one, or give its method another id",
         theirs, ours);
     expect_warned(finished.output, words);
@@ -63,11 +62,11 @@ TEST_F(PluginCli, one_of_plugin_dir_is_used_in_the_place_of_lodbench_s_own_and_t
     const Json::Value run = run_json();
     for (const Json::Value& plugin : run["plugins"]) {
         if (plugin["path"] == theirs) {
-            EXPECT_EQ(plugin["methods"][0]["id"], "static-patches");
+            EXPECT_EQ(plugin["methods"][0]["id"], "refined");
         }
         if (plugin["path"] != ours) continue;
-        ASSERT_EQ(plugin["methods"].size(), 1U);
-        EXPECT_EQ(plugin["methods"][0]["id"], "hybrid-patches");
+        ASSERT_EQ(plugin["methods"].size(), 2U);
+        for (const Json::Value& method : plugin["methods"]) EXPECT_NE(method["id"], "refined");
         EXPECT_EQ(plugin["left_out"][0], words);
     }
 }
@@ -76,8 +75,7 @@ TEST_F(PluginCli, list_tells_what_is_left_out) {
     const Finished listed = run_lodbench(
         {"list", "--plugin-dir", broken_plugin_folder("takes_an_id")}, scratch_.path());
     EXPECT_EQ(listed.status, 0);
-    EXPECT_THAT(listed.output,
-                HasSubstr("warning: method 'static-patches' is held by two plugins: "));
+    EXPECT_THAT(listed.output, HasSubstr("warning: method 'refined' is held by two plugins: "));
 }
 
 TEST_F(PluginCli, one_that_was_compiled_otherwise_is_warned_of_and_others_are_not) {

@@ -20,7 +20,7 @@ Arguments operator+(Arguments first, const Arguments& second) {
 
 TEST_F(RealtimeTruth, is_above_the_lockstep_error_where_the_method_lags_and_null_where_it_cannot) {
     const fs::path out =
-        run("out", kLags + Arguments{"--method", "full-grid", "--method", "lindstrom"});
+        run("out", kLags + Arguments{"--method", "every-sample", "--method", "refined"});
     const std::vector<Json::Value> cells = cells_of(out);
     ASSERT_EQ(cells.size(), 3U);
     for (const Json::Value& cell : cells) {
@@ -82,8 +82,9 @@ TEST_F(RealtimeTruth, changes_nothing_in_lockstep_where_two_runs_are_equal) {
 }
 
 TEST_F(RealtimeTruth, and_all_other_truth_is_null_without_it_and_counts_and_picture_are_the_same) {
-    const Arguments methods = kLags + Arguments{"--method", "full-grid", "--method", "lindstrom",
-                                                "--method", "pgm",       "--set",    "pgm.grid=24"};
+    const Arguments methods =
+        kLags + Arguments{"--method", "every-sample", "--method", "refined",
+                          "--method", "strided",      "--set",    "strided.vertices=24"};
     const fs::path with = run("with", methods),
                    without = run("without", methods + Arguments{"--no-truth"});
     const std::vector<Json::Value> measured = cells_of(with), plain = cells_of(without);
@@ -127,7 +128,7 @@ TEST_F(RealtimeTruth, and_all_other_truth_is_null_without_it_and_counts_and_pict
 }
 
 TEST_F(RealtimeTruth, and_all_other_truth_is_measured_in_the_first_repetition_alone) {
-    const fs::path out = run("out", kLags + Arguments{"--method", "lindstrom", "--repeat", "2"});
+    const fs::path out = run("out", kLags + Arguments{"--method", "refined", "--repeat", "2"});
     const std::vector<Json::Value> cells = cells_of(out);
     ASSERT_EQ(cells.size(), 4U);
     std::map<std::string, std::vector<std::string>> counts;

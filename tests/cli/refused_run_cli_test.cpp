@@ -29,8 +29,8 @@ protected:
     Finished run(const std::string& terrain, const std::vector<std::string>& more = {}) const {
         std::vector<std::string> arguments = {"run",      scenario(terrain).string(),
                                               "--out",    out().string(),
-                                              "--method", "full-grid",
-                                              "--method", "lindstrom"};
+                                              "--method", "every-sample",
+                                              "--method", "refined"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_lodbench(arguments, folder_.path());
     }
@@ -109,12 +109,12 @@ TEST_F(BadTerrain, mistakes_of_usage_end_with_status_2_and_leave_no_folder) {
     write_heights(7);
     const std::pair<std::vector<std::string>, const char*> mistakes[] = {
         {{"--method", "nosuch"}, "no method 'nosuch' was found; known: "},
-        {{"--set", "lindstrom.nosuch=1"}, "nosuch"},
-        {{"--set", "lindstrom.tau=far"}, "far"},
-        {{"--set", "pgm.grid=24"}, "'pgm' is not flown in this run"},
+        {{"--set", "refined.nosuch=1"}, "nosuch"},
+        {{"--set", "refined.tau=far"}, "far"},
+        {{"--set", "strided.vertices=24"}, "'strided' is not flown in this run"},
         {{"--size", "0x24"}, "--size 0x24: expected WIDTHxHEIGHT"},
         {{"--seed", "-1"}, "--seed -1: expected a whole number"},
-        {{"--set", "lindstrom.tau=1", "--set", "lindstrom.tau=2"}, "lindstrom.tau is set twice"},
+        {{"--set", "refined.tau=1", "--set", "refined.tau=2"}, "refined.tau is set twice"},
         {{"--frames", "0"}, "--frames"},
         {{"--repeat", "0"}, "--repeat"},
     };
@@ -166,7 +166,7 @@ TEST(List, json_names_each_method_and_describe_each_parameter) {
     const Json::Value json = results::parse_json(listed.output, "list");
     std::set<std::string> ids;
     for (const Json::Value& method : json["methods"]) ids.insert(method["id"].asString());
-    EXPECT_THAT(ids, testing::IsSupersetOf({"full-grid", "lindstrom", "pgm", "template"}));
+    EXPECT_THAT(ids, testing::IsSupersetOf({"every-sample", "refined", "strided", "template"}));
     for (const std::string& id : ids) {
         const Finished described = run_lodbench({"describe", id, "--json"}, folder.path());
         ASSERT_EQ(described.status, 0) << described.output;

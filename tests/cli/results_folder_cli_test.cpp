@@ -61,7 +61,7 @@ TEST_F(ResultsFolder, that_holds_the_users_files_is_refused_by_name_and_left_as_
         {"run", {"--method", "nosuch"}},
         {"run", {"--method", "template", "--resume"}},
         {"sweep", {"--method", "template"}},
-        {"match", {"--method", "lindstrom", "--error", "1"}},
+        {"match", {"--method", "refined", "--error", "1"}},
     };
     std::mt19937 random(13);
     const char* const folders[] = {"",       "scenarios/", "frames/", "flights/",   "logs/",
@@ -156,8 +156,8 @@ TEST_F(ResultsFolder, run_that_was_killed_before_its_scenarios_stood_is_resumed)
 }
 
 TEST_F(ResultsFolder, match_that_is_killed_goes_on_to_the_result_of_an_undisturbed_one) {
-    const std::vector<std::string> more = {"--method", "lindstrom", "--triangles",
-                                           "100",      "--probes",  "4"};
+    const std::vector<std::string> more = {"--method", "refined",  "--triangles",
+                                           "100",      "--probes", "4"};
     ASSERT_EQ(lodbench("match", more).status, 0);
     const std::string undisturbed = text_of(out() / "match.json");
     const Finished again = lodbench("match", more);
@@ -177,10 +177,10 @@ TEST_F(ResultsFolder, match_that_is_killed_goes_on_to_the_result_of_an_undisturb
 }
 
 TEST_F(ResultsFolder, sweep_that_is_killed_goes_on_and_writes_its_table) {
-    const std::vector<std::string> more = {"--method", "lindstrom", "--points", "3"};
+    const std::vector<std::string> more = {"--method", "refined", "--points", "3"};
     const std::string table =
         after_kills(resumed(command("sweep", more)), scratch_.path(), out() / "trade.md", 4);
-    EXPECT_THAT(table, HasSubstr("lindstrom tau="));
+    EXPECT_THAT(table, HasSubstr("refined tau="));
     EXPECT_EQ(cells_of(out()).size(), 6U);
 }
 

@@ -73,9 +73,23 @@ class Rooms(unittest.TestCase):
             for path, place, name in sources(folder):
                 seen += 1
                 elsewhere = any((SOURCE / root / name).exists() for root in ("harness", "shaders", "tests"))
-                self.assertFalse((SOURCE / "methods" / name).exists() and not elsewhere, place)
+                shared = folder == "tests" and name.startswith("common/")
+                self.assertFalse((SOURCE / "methods" / name).exists() and not elsewhere and not shared, place)
                 self.assertFalse((path.parent / name).resolve().is_relative_to(SOURCE / "methods"), place)
         self.assertGreater(seen, 1000)
+
+    def test_no_test_of_the_harness_flies_a_method_that_can_be_deleted(self):
+        own = set(ids()) - {"template", "template_method"}
+        # The demo flies all that there are, and its cluster three of them.
+        everything = {"demo_slow_test.cpp", "slurm_test.py"}
+        flown = 0
+        for path in sorted((SOURCE / "tests").rglob("*")):
+            if path.suffix not in (".cpp", ".h", ".py") or path.name in everything:
+                continue
+            for name in re.findall(r'"--method",\s*"([\w-]+)"|LODBENCH_PLUGINS "/(\w+)\.so', path.read_text()):
+                flown += 1
+                self.assertFalse(own & set(name), f"{path.relative_to(SOURCE)} flies {name}")
+        self.assertGreater(flown, 50)
 
     def test_a_method_includes_no_other_method(self):
         self.assertGreaterEqual(len(METHODS), 7)

@@ -28,7 +28,7 @@ protected:
         std::string out, err;
     };
 
-    /// A terrain of 129 x 129 samples: 2 x 2 blocks of 64 x 64 cells for full-grid. The camera
+    /// A terrain of 129 x 129 samples: 2 x 2 blocks of 64 x 64 cells for every-sample. The camera
     /// looks straight down at all of it first, and leaves it behind in the end.
     fs::path scenario(const std::string& more = "") {
         const fs::path file = folder_.path() / "small.toml";
@@ -72,8 +72,8 @@ protected:
     ScratchFolder folder_;
 };
 
-const Arguments kThree = {"--method", "full-grid", "--method", "lindstrom",
-                          "--method", "pgm",       "--set",    "pgm.grid=24"};
+const Arguments kThree = {"--method", "every-sample", "--method", "refined",
+                          "--method", "strided",      "--set",    "strided.vertices=24"};
 
 Arguments operator+(Arguments first, const Arguments& second) {
     first.insert(first.end(), second.begin(), second.end());
@@ -81,14 +81,16 @@ Arguments operator+(Arguments first, const Arguments& second) {
 }
 
 TEST_F(Run, table_goes_to_standard_output_and_progress_to_standard_error) {
-    const Spoken spoken = run(
-        scenario(), {"--method", "pgm", "--method", "full-grid", "--set", "pgm.grid=24,32"}, out());
+    const Spoken spoken =
+        run(scenario(),
+            {"--method", "strided", "--method", "every-sample", "--set", "strided.vertices=24,32"},
+            out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
     // One row for each method and setting, whatever order they were named and flown in.
     std::vector<std::size_t> at;
-    for (const char* text :
-         {"small\n", "  method ", "fps (range)", "median ms", "triangles", "GPU MiB",
-          "\n  full-grid ", "\n  pgm grid=24 ", "\n  pgm grid=32 ", "\nresults ", "\npictures "}) {
+    for (const char* text : {"small\n", "  method ", "fps (range)", "median ms", "triangles",
+                             "GPU MiB", "\n  every-sample ", "\n  strided vertices=24 ",
+                             "\n  strided vertices=32 ", "\nresults ", "\npictures "}) {
         at.push_back(spoken.out.find(text));
         ASSERT_NE(at.back(), std::string::npos) << text << " in " << spoken.out;
     }
@@ -96,7 +98,7 @@ TEST_F(Run, table_goes_to_standard_output_and_progress_to_standard_error) {
     EXPECT_THAT(spoken.out, HasSubstr(out().string()));
     EXPECT_THAT(spoken.err, HasSubstr("[3/3] "));
     EXPECT_EQ(spoken.out.find("[3/3]"), std::string::npos);
-    EXPECT_THAT(text_of(out() / "summary.md"), HasSubstr("| pgm grid=24 | "));
+    EXPECT_THAT(text_of(out() / "summary.md"), HasSubstr("| strided vertices=24 | "));
 }
 
 TEST_F(Run, json_is_one_object_with_the_cells_as_they_are_in_the_file) {
@@ -114,15 +116,15 @@ TEST_F(Run, json_is_one_object_with_the_cells_as_they_are_in_the_file) {
 }
 
 TEST_F(Run, options_replace_what_the_scenario_says_and_lists_are_swept) {
-    const Spoken spoken = run(
-        scenario("[[method]]\nid = \"full-grid\"\n"),
-        {"--method", "lindstrom", "--set", "lindstrom.tau=1,4", "--set", "lindstrom.culling=false",
-         "--size", "40x30", "--frames", "3", "--repeat", "2", "--seed", "77"},
-        out());
+    const Spoken spoken =
+        run(scenario("[[method]]\nid = \"every-sample\"\n"),
+            {"--method", "refined", "--set", "refined.tau=1,4", "--set", "refined.culling=false",
+             "--size", "40x30", "--frames", "3", "--repeat", "2", "--seed", "77"},
+            out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
     std::map<double, std::set<int>> repetitions;
     for (const Json::Value& cell : cells_of(out())) {
-        EXPECT_EQ(cell["method"].asString(), "lindstrom")
+        EXPECT_EQ(cell["method"].asString(), "refined")
             << "--method leaves out what the scenario names";
         EXPECT_EQ(cell["frames"].asInt(), 3);
         EXPECT_FALSE(cell["params"]["culling"].asBool());
@@ -155,13 +157,14 @@ TEST_F(Run, pictures_and_wireframes_are_whole_png_of_the_size_asked_for) {
     EXPECT_EQ(
         names,
         (std::set<std::string>{
-            "full-grid__small__r0__f00000.png", "full-grid__small__r0__f00000__wireframe.png",
-            "full-grid__small__r0__worst.png", "lindstrom__small__r0__f00000.png",
-            "lindstrom__small__r0__f00000__wireframe.png", "lindstrom__small__r0__worst.png",
-            "pgm__grid=24__small__r0__f00000.png", "pgm__grid=24__small__r0__f00000__wireframe.png",
-            "pgm__grid=24__small__r0__worst.png"}));
-    EXPECT_NE(text_of(out() / "shots" / "full-grid__small__r0__f00000.png"),
-              text_of(out() / "shots" / "full-grid__small__r0__f00000__wireframe.png"));
+            "every-sample__small__r0__f00000.png", "every-sample__small__r0__f00000__wireframe.png",
+            "every-sample__small__r0__worst.png", "refined__small__r0__f00000.png",
+            "refined__small__r0__f00000__wireframe.png", "refined__small__r0__worst.png",
+            "strided__vertices=24__small__r0__f00000.png",
+            "strided__vertices=24__small__r0__f00000__wireframe.png",
+            "strided__vertices=24__small__r0__worst.png"}));
+    EXPECT_NE(text_of(out() / "shots" / "every-sample__small__r0__f00000.png"),
+              text_of(out() / "shots" / "every-sample__small__r0__f00000__wireframe.png"));
 }
 
 TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
@@ -199,29 +202,30 @@ TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
             for (const char* part : {"max", "p999", "p99", "rms", "mean", "over_tau", "worst"}) {
                 EXPECT_TRUE(cell[errors].isMember(part)) << errors << part;
             }
-            EXPECT_EQ(cell[errors]["over_tau"].isNull(), cell["method"] != "lindstrom") << errors;
+            EXPECT_EQ(cell[errors]["over_tau"].isNull(), cell["method"] != "refined") << errors;
         }
         for (const char* object : {"crack_pixels", "skirt_pixels", "silhouette_px", "popping_px",
                                    "height_rmse_m", "image"}) {
             EXPECT_TRUE(cell[object].isObject()) << object;
         }
         EXPECT_TRUE(cell["uncovered_samples"].isNumeric());
-        EXPECT_EQ(cell["bound_honesty"].isNull(), cell["method"] != "lindstrom");
+        EXPECT_EQ(cell["bound_honesty"].isNull(), cell["method"] != "refined");
         ASSERT_TRUE(cell.isMember("pixel_error_realtime_px"));
-        EXPECT_EQ(cell["pixel_error_realtime_px"].isNull(), cell["method"] != "pgm")
+        EXPECT_EQ(cell["pixel_error_realtime_px"].isNull(), cell["method"] != "strided")
             << "the one that is asynchronous";
         EXPECT_TRUE(cell.isMember("reason"));
         EXPECT_TRUE(cell["reason"].isNull());
         EXPECT_TRUE(cell.isMember("claimed_px"));
-        EXPECT_EQ(cell["claimed_px"].isNull(), cell["method"] != "lindstrom");
+        EXPECT_EQ(cell["claimed_px"].isNull(), cell["method"] != "refined");
     }
 }
 
 TEST_F(Run, statistics_of_a_cell_are_those_of_its_frames) {
     constexpr int kFrames = 200;  // as many as P95 needs
-    ASSERT_EQ(run(scenario(), {"--method", "full-grid", "--frames", std::to_string(kFrames)}, out())
-                  .status,
-              0);
+    ASSERT_EQ(
+        run(scenario(), {"--method", "every-sample", "--frames", std::to_string(kFrames)}, out())
+            .status,
+        0);
     const Json::Value cell = cells_of(out()).at(0);
     const std::vector<FrameRow> frames = frames_of(out(), cell["cell"].asString());
     ASSERT_EQ(frames.size(), std::size_t(kFrames));
@@ -254,22 +258,6 @@ TEST_F(Run, statistics_of_a_cell_are_those_of_its_frames) {
     EXPECT_NEAR(times["low1"].asDouble(), (wall[198] + wall[199]) / 2, rounding);
     EXPECT_EQ(cell["triangles"]["max"].asDouble(), *std::ranges::max_element(triangles));
     EXPECT_EQ(cell["triangles"]["min"].asDouble(), *std::ranges::min_element(triangles));
-}
-
-TEST_F(Run, full_grid_draws_exactly_the_triangles_of_its_visible_blocks) {
-    ASSERT_EQ(run(scenario(), {"--method", "full-grid"}, out()).status, 0);
-    const Json::Value cell = cells_of(out()).at(0);
-    constexpr double kBlock = 2 * 64 * 64;
-    EXPECT_EQ(cell["counters"]["blocks_total"].asDouble(), 4);
-    EXPECT_EQ(cell["triangles"]["mean"].asDouble(),
-              kBlock * cell["counters"]["blocks_visible"].asDouble());
-    const std::vector<FrameRow> frames = frames_of(out(), cell["cell"].asString());
-    ASSERT_EQ(frames.size(), 8U);
-    EXPECT_EQ(frames.front().at("triangles"), 4 * kBlock) << "all of the terrain is in sight";
-    EXPECT_EQ(frames.back().at("triangles"), 0) << "the terrain is out of sight";
-    for (const FrameRow& frame : frames) {
-        EXPECT_EQ(frame.at("triangles"), kBlock * int(frame.at("triangles") / kBlock));
-    }
 }
 
 TEST_F(Run, one_seed_gives_the_same_order_counts_and_pictures_twice) {
@@ -333,7 +321,7 @@ TEST_F(Run, a_cell_loads_no_module_that_its_scenario_does_not_need) {
 
 TEST_F(Run, run_json_holds_the_whole_context) {
     const fs::path file = scenario();
-    ASSERT_EQ(run(file, {"--method", "lindstrom"}, out()).status, 0);
+    ASSERT_EQ(run(file, {"--method", "refined"}, out()).status, 0);
     const Json::Value json = run_json(out());
     EXPECT_TRUE(json["schema_version"].isNumeric());
     for (const char* text :
@@ -356,7 +344,7 @@ TEST_F(Run, run_json_holds_the_whole_context) {
     EXPECT_EQ(json["cells"].size(), 1U);
     // Every parameter with its value, the ones left alone too.
     const Json::Value cell = cells_of(out()).at(0);
-    for (const char* name : {"tau", "culling", "error", "metric"}) {
+    for (const char* name : {"tau", "culling"}) {
         EXPECT_TRUE(cell["params"].isMember(name)) << name;
     }
 }
@@ -374,7 +362,7 @@ TEST_F(Run, a_flight_that_sees_no_terrain_is_told_once_and_stands_in_the_results
         for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
         return count;
     };
-    const Spoken spoken = run(file, {"--method", "full-grid"}, out());
+    const Spoken spoken = run(file, {"--method", "every-sample"}, out());
     ASSERT_EQ(spoken.status, 0) << spoken.err;
     const std::string blind =
         "warning: the flight of 'deep': no terrain is in view in all 3 frames";

@@ -16,7 +16,7 @@ std::vector<std::string> shard_command(const fs::path& folder, const std::string
                                        const fs::path& out) {
     return {"run",      tiny_scenario(folder, "repetitions = 3\n").string(),
             "--method", "template",
-            "--method", "full-grid",
+            "--method", "every-sample",
             "--shard",  shard,
             "--out",    out.string()};
 }
@@ -89,8 +89,8 @@ TEST(Shard, of_a_sweep_flies_every_value_of_its_repetitions) {
     const ScratchFolder folder;
     const fs::path out = folder.path() / "out";
     const Finished finished = run_lodbench(
-        {"sweep", tiny_scenario(folder.path(), "repetitions = 2\n").string(), "--method",
-         "lindstrom", "--points", "3", "--shard", "2/2", "--out", out.string()},
+        {"sweep", tiny_scenario(folder.path(), "repetitions = 2\n").string(), "--method", "refined",
+         "--points", "3", "--shard", "2/2", "--out", out.string()},
         folder.path());
     ASSERT_EQ(finished.status, 0) << finished.output;
     const auto cells = cells_of(out);
@@ -101,15 +101,15 @@ TEST(Shard, of_a_sweep_flies_every_value_of_its_repetitions) {
 TEST(Plan, names_blocks_cells_and_the_time_that_an_earlier_run_took) {
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "repetitions = 3\n").string();
-    const std::vector<std::string> plan = {"plan",     scenario,    "--method", "template",
-                                           "--method", "full-grid", "--shards", "2"};
+    const std::vector<std::string> plan = {"plan",     scenario,       "--method", "template",
+                                           "--method", "every-sample", "--shards", "2"};
     const Finished blind = run_lodbench(plan, folder.path());
     ASSERT_EQ(blind.status, 0) << blind.output;
     EXPECT_THAT(blind.output, HasSubstr("6 cells in 3 blocks, seed 1\n"));
     EXPECT_THAT(blind.output, HasSubstr("expected: not known; --from DIR"));
 
     const fs::path out = folder.path() / "out";
-    ASSERT_EQ(run_lodbench({"run", scenario, "--method", "template", "--method", "full-grid",
+    ASSERT_EQ(run_lodbench({"run", scenario, "--method", "template", "--method", "every-sample",
                             "--out", out.string()},
                            folder.path())
                   .status,
@@ -141,7 +141,7 @@ TEST(Plan, of_a_sweep_counts_the_values_of_the_knobs_and_knob_options_need_it) {
     const ScratchFolder folder;
     const std::string scenario = tiny_scenario(folder.path(), "repetitions = 2\n").string();
     const Finished sweep = run_lodbench(
-        {"plan", scenario, "--method", "lindstrom", "--sweep", "--points", "4"}, folder.path());
+        {"plan", scenario, "--method", "refined", "--sweep", "--points", "4"}, folder.path());
     ASSERT_EQ(sweep.status, 0) << sweep.output;
     EXPECT_THAT(sweep.output, HasSubstr("8 cells in 2 blocks"));
     EXPECT_EQ(run_lodbench({"plan", scenario, "--points", "4"}, folder.path()).status, 2);

@@ -233,7 +233,7 @@ TEST_F(StoreCommand, a_store_is_flown_and_measured_as_the_same_terrain_in_memory
     for (const char* name : {"a.raw", "a.tiles"}) {
         const fs::path out = folder_.path() / "out" / name;
         const Finished finished = run_lodbench(
-            {"run", scenario(name).string(), "--out", out.string(), "--method", "lindstrom"},
+            {"run", scenario(name).string(), "--out", out.string(), "--method", "refined"},
             folder_.path());
         ASSERT_EQ(finished.status, 0) << finished.output;
         cells.push_back(cells_of(out).at(0));
@@ -244,7 +244,7 @@ TEST_F(StoreCommand, a_store_is_flown_and_measured_as_the_same_terrain_in_memory
         EXPECT_EQ(cells[0][field], cells[1][field]) << field;
     }
     EXPECT_EQ(cells[0]["terrain_bytes_read"].asUInt64(), 0U);
-    // lindstrom reads the whole: each tile of level 0 at least once.
+    // refined reads the whole: each tile of level 0 at least once.
     EXPECT_GE(cells[1]["terrain_bytes_read"].asUInt64(), 5U * 4 * 16900);
     EXPECT_EQ(cells[1]["samples_served"].asUInt64(), 300U * 200);
 }
@@ -347,7 +347,7 @@ TEST_F(StoreCommand, flown_out_of_core_skips_the_methods_that_hold_it_whole) {
     const auto fly = [&](const char* more, const std::vector<std::string>& options) {
         std::vector<std::string> arguments = {"run",      scenario("a.tiles", more).string(),
                                               "--out",    (folder_.path() / "out").string(),
-                                              "--method", "dltq",
+                                              "--method", "strided",
                                               "--method", "template"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         return run_lodbench(arguments, folder_.path());
@@ -359,7 +359,7 @@ TEST_F(StoreCommand, flown_out_of_core_skips_the_methods_that_hold_it_whole) {
         cells[cell["method"].asString()] = cell;
     }
     ASSERT_EQ(cells.size(), 2U);
-    EXPECT_EQ(cells["dltq"]["status"].asString(), "ok");
+    EXPECT_EQ(cells["strided"]["status"].asString(), "ok");
     EXPECT_EQ(cells["template"]["status"].asString(), "skipped");
     EXPECT_EQ(cells["template"]["reason"].asString(),
               "method 'template' holds the whole terrain in memory, and the scenario is out of "
@@ -372,7 +372,7 @@ TEST_F(StoreCommand, flown_out_of_core_measures_what_is_measured_in_memory) {
         const fs::path folder = folder_.path() / out;
         const Finished flown =
             run_lodbench({"run", scenario("a.tiles", more).string(), "--out", folder.string(),
-                          "--method", "dltq", "--set", "dltq.tau=16"},
+                          "--method", "strided", "--set", "strided.vertices=16"},
                          folder_.path());
         EXPECT_EQ(flown.status, 0) << flown.output;
         return folder;

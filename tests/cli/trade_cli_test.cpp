@@ -60,11 +60,11 @@ protected:
 
 TEST_F(Trade, sweep_flies_each_knob_around_its_default_and_marks_the_front) {
     const Json::Value swept =
-        json(lodbench("sweep", {"--method", "lindstrom", "--method", "full-grid", "--points", "3",
+        json(lodbench("sweep", {"--method", "refined", "--method", "every-sample", "--points", "3",
                                 "--json", "--out", out()}));
     ASSERT_EQ(swept["cells"].size(), 4U);
     ASSERT_EQ(swept["trade"].size(), 4U);
-    EXPECT_EQ(swept["trade"][0]["method"], "full-grid");
+    EXPECT_EQ(swept["trade"][0]["method"], "every-sample");
     EXPECT_TRUE(swept["trade"][0]["knob"].isNull());
     EXPECT_TRUE(swept["trade"][0]["on_front"].asBool()) << "no other is as exact";
     double error = -1;
@@ -73,17 +73,17 @@ TEST_F(Trade, sweep_flies_each_knob_around_its_default_and_marks_the_front) {
         EXPECT_GT(swept["trade"][i]["pixel_error_px"].asDouble(), error);
         error = swept["trade"][i]["pixel_error_px"].asDouble();
     }
-    EXPECT_THAT(text_of(fs::path(out()) / "trade.md"), HasSubstr("| lindstrom tau=0.5 |"));
+    EXPECT_THAT(text_of(fs::path(out()) / "trade.md"), HasSubstr("| refined tau=0.5 |"));
 }
 
 TEST_F(Trade, values_of_the_user_and_of_the_scenario_go_before_those_around_the_default) {
     const Json::Value swept =
-        json(lodbench("sweep", {"--method", "lindstrom", "--method", "pgm", "--method",
-                                "static-patches", "--set", "pgm.grid=16", "--knob-values",
-                                "lindstrom=3,9", "--points", "1", "--json", "--out", out()}));
+        json(lodbench("sweep", {"--method", "refined", "--method", "strided", "--method",
+                                "every-sample", "--set", "strided.vertices=16", "--knob-values",
+                                "refined=3,9", "--points", "1", "--json", "--out", out()}));
     std::string labels;
     for (const Json::Value& row : swept["trade"]) labels += row["label"].asString() + ";";
-    EXPECT_EQ(labels, "lindstrom tau=3;lindstrom tau=9;pgm;static-patches;");
+    EXPECT_EQ(labels, "every-sample;refined tau=3;refined tau=9;strided;");
 }
 
 TEST_F(Trade, wrong_options_are_refused_before_anything_flies) {
@@ -92,12 +92,14 @@ TEST_F(Trade, wrong_options_are_refused_before_anything_flies) {
         Arguments arguments;
         const char* words;
     } wrong[] = {
-        {"sweep", {"--knob-values", "lindstrom"}, "expected METHOD=VALUE[,VALUE...]"},
+        {"sweep", {"--knob-values", "refined"}, "expected METHOD=VALUE[,VALUE...]"},
         {"sweep", {"--knob-values", "moon=1"}, "method 'moon' is not flown in this sweep"},
-        {"sweep", {"--method", "full-grid", "--knob-values", "full-grid=1"}, "has no quality knob"},
         {"sweep",
-         {"--method", "pgm", "--set", "pgm.grid=9", "--knob-values", "pgm=8"},
-         "pgm.grid is set elsewhere too"},
+         {"--method", "every-sample", "--knob-values", "every-sample=1"},
+         "has no quality knob"},
+        {"sweep",
+         {"--method", "strided", "--set", "strided.vertices=9", "--knob-values", "strided=8"},
+         "strided.vertices is set elsewhere too"},
         {"sweep", {"--metric", "mean"}, "expected p999, max or rms"},
         {"sweep", {"--reference", "3"}, "expected PX,MS"},
         {"sweep", {"--reference", "3,-1"}, "expected a positive number"},
@@ -107,10 +109,10 @@ TEST_F(Trade, wrong_options_are_refused_before_anything_flies) {
         {"match", {"--error", "0"}, "expected a positive number"},
         {"match", {"--frame-ms", "inf"}, "expected a positive number"},
         {"match",
-         {"--error", "1", "--method", "lindstrom", "--set", "lindstrom.tau=1"},
+         {"--error", "1", "--method", "refined", "--set", "refined.tau=1"},
          "it is what is to be found"},
         {"match",
-         {"--error", "1", "--method", "pgm", "--set", "pgm.margin=0,0.1"},
+         {"--error", "1", "--method", "strided", "--set", "strided.uncovered=0,0.1"},
          "several settings"},
     };
     for (const auto& test : wrong) {
@@ -126,31 +128,31 @@ TEST_F(Trade, match_finds_the_knob_and_flies_it_whatever_the_seed) {
     std::vector<double> found;
     for (const char* seed : {"1", "77"}) {
         const Json::Value matched =
-            json(lodbench("match", {"--error", "2px", "--method", "lindstrom", "--method",
-                                    "full-grid", "--seed", seed, "--json", "--out", out(seed)}));
+            json(lodbench("match", {"--error", "2px", "--method", "refined", "--method",
+                                    "every-sample", "--seed", seed, "--json", "--out", out(seed)}));
         ASSERT_EQ(matched["match"]["methods"].size(), 2U);
         const Json::Value& method = matched["match"]["methods"][1];
-        EXPECT_EQ(method["method"], "lindstrom");
+        EXPECT_EQ(method["method"], "refined");
         EXPECT_EQ(method["outcome"], "met");
         EXPECT_NEAR(method["achieved"].asDouble(), 2.0, 0.1);
         found.push_back(method["knob_value"].asDouble());
         // What was flown in the end is what was found, and it measures the same.
         for (const Json::Value& row : matched["trade"]) {
-            if (row["method"] != "lindstrom") continue;
+            if (row["method"] != "refined") continue;
             EXPECT_EQ(row["knob"].asDouble(), found.back());
             EXPECT_NEAR(row["pixel_error_px"].asDouble(), 2.0, 0.1);
         }
         EXPECT_EQ(results::parse_sealed(text_of(fs::path(out(seed)) / "match.json"), "match.json"),
                   matched["match"]);
-        EXPECT_THAT(text_of(fs::path(out(seed)) / "match.md"), HasSubstr("| lindstrom "));
+        EXPECT_THAT(text_of(fs::path(out(seed)) / "match.md"), HasSubstr("| refined "));
     }
     EXPECT_EQ(found[0], found[1]) << "the truth does not depend on the seed";
 }
 
 TEST_F(Trade, match_flies_an_asynchronous_method_three_times_where_it_meets_the_target) {
     const Json::Value swept = json(lodbench(
-        "sweep", {"--method", "dltq", "--method", "hybrid-patches", "--knob-values", "dltq=64",
-                  "--knob-values", "hybrid-patches=4", "--json", "--out", out("sweep")}));
+        "sweep", {"--method", "strided", "--method", "refined", "--knob-values", "strided=16",
+                  "--knob-values", "refined=4", "--json", "--out", out("sweep")}));
     for (const Json::Value& row : swept["trade"]) {
         // Reached by steps of four from the default.
         const std::string method = row["method"].asString();
@@ -162,13 +164,13 @@ TEST_F(Trade, match_flies_an_asynchronous_method_three_times_where_it_meets_the_
         ASSERT_EQ(entry["outcome"], "met") << method;
         const auto flights =
             std::distance(fs::directory_iterator(fs::path(out(method)) / "search"), {});
-        EXPECT_EQ(flights, entry["probes"].size() + (method == "dltq" ? 2 : 0)) << method;
+        EXPECT_EQ(flights, entry["probes"].size() + (method == "strided" ? 2 : 0)) << method;
     }
 }
 
 TEST_F(Trade, match_says_what_cannot_be_reached_and_the_nearest_there_is) {
     const Json::Value matched = json(lodbench(
-        "match", {"--triangles", "100000000", "--method", "lindstrom", "--json", "--out", out()}));
+        "match", {"--triangles", "100000000", "--method", "refined", "--json", "--out", out()}));
     const Json::Value& method = matched["match"]["methods"][0];
     EXPECT_EQ(method["outcome"], "unreachable");
     EXPECT_GT(method["achieved"].asDouble(), 1000);
@@ -180,7 +182,7 @@ TEST_F(Trade, match_says_what_cannot_be_reached_and_the_nearest_there_is) {
 
 TEST_F(Trade, match_explains_the_outcomes_that_occur_and_gives_no_hypervolume) {
     const auto text = [&](const std::string& name, const Arguments& more) {
-        Arguments arguments = {"--method", "lindstrom", "--out", out(name)};
+        Arguments arguments = {"--method", "refined", "--out", out(name)};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Finished finished = lodbench("match", arguments);
         EXPECT_EQ(finished.status, 0) << errors();
@@ -240,12 +242,12 @@ TEST_F(Trade, what_match_prints_is_what_its_frames_give) {
     // Frame 1 is measured for the economy alone, and is in no figure; frame 2 by `every` too.
     measure_ = "economy = [1, 2]\n";
     const auto figures_of = [&](const std::string& name, const Arguments& target) {
-        Arguments arguments = {"--method", "lindstrom", "--out", out(name), "--probes", "5"};
+        Arguments arguments = {"--method", "refined", "--out", out(name), "--probes", "5"};
         arguments.insert(arguments.end(), target.begin(), target.end());
         const Finished finished = lodbench("match", arguments);
         EXPECT_EQ(finished.status, 0) << errors();
         EXPECT_THAT(text_of(fs::path(out(name)) / "match.md"), HasSubstr(" flown |"));
-        return search_row(finished.output, "lindstrom");
+        return search_row(finished.output, "refined");
     };
     const auto mean = [](const std::vector<double>& values) {
         return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
@@ -275,9 +277,9 @@ TEST_F(Trade, what_match_prints_of_a_percentile_is_that_of_its_one_measured_fram
     for (const auto& [name, every] : {std::pair("one", 4), {"two", 2}}) {
         every_ = every;
         const Finished finished =
-            lodbench("match", {"--method", "lindstrom", "--error", "2", "--out", out(name)});
+            lodbench("match", {"--method", "refined", "--error", "2", "--out", out(name)});
         ASSERT_EQ(finished.status, 0) << errors();
-        const auto row = search_row(finished.output, "lindstrom");
+        const auto row = search_row(finished.output, "refined");
         EXPECT_EQ(row.at("achieved"), row.at("flown"));
         EXPECT_EQ(row.at("outcome"), "met");
         const std::vector<double> frames = column_of(out(name), "pixel_p999_px");
@@ -293,13 +295,13 @@ TEST_F(Trade, what_match_prints_of_a_percentile_is_that_of_its_one_measured_fram
 
 TEST_F(Trade, match_says_where_its_search_stands_and_what_may_be_left) {
     const Finished finished =
-        lodbench("match", {"--method", "lindstrom", "--method", "pgm", "--probes", "3",
+        lodbench("match", {"--method", "refined", "--method", "strided", "--probes", "3",
                            "--triangles", "2000", "--out", out()});
     ASSERT_EQ(finished.status, 0) << errors();
     const std::string told = errors();
-    EXPECT_THAT(told, HasSubstr("[1/2] lindstrom: probe 1 of at most 3: tau = 1 gives "));
-    EXPECT_THAT(told, HasSubstr("[2/2] pgm: probe 1 of at most 3: grid = "));
-    const std::string line = told.substr(told.find("[1/2] lindstrom: probe 1"));
+    EXPECT_THAT(told, HasSubstr("[1/2] refined: probe 1 of at most 3: tau = 1 gives "));
+    EXPECT_THAT(told, HasSubstr("[2/2] strided: probe 1 of at most 3: vertices = "));
+    const std::string line = told.substr(told.find("[1/2] refined: probe 1"));
     EXPECT_THAT(line.substr(0, line.find('\n')),
                 testing::ContainsRegex(", at most [0-9]+:[0-9][0-9] of searching left$"));
 }
@@ -310,18 +312,18 @@ TEST_F(Trade, match_redraws_a_line_on_a_terminal_while_a_probe_flies) {
     frames_ = "frames = 400\n";
     write_scenario();
     const std::string command = fmt::format(
-        "cd '{}' && script -qec '{} match small.toml --method full-grid --method lindstrom "
+        "cd '{}' && script -qec '{} match small.toml --method every-sample --method refined "
         "--probes "
         "2 --triangles 2000 --out terminal' shown >/dev/null 2>&1 </dev/null",
         folder_.path().string(), LODBENCH_BINARY);
     ASSERT_EQ(std::system(command.c_str()), 0) << text_of(folder_.path() / "shown");
     EXPECT_THAT(text_of(folder_.path() / "shown"),
-                testing::ContainsRegex("\r.\\[K\\[1/1\\] lindstrom: probe [12] of at most 2: "
+                testing::ContainsRegex("\r.\\[K\\[1/1\\] refined: probe [12] of at most 2: "
                                        "[0-9]+ %, at most [0-9]+:[0-9][0-9] of searching left"));
 }
 
 TEST_F(Trade, sweep_names_the_report_but_not_in_its_json) {
-    const Arguments arguments = {"--method", "lindstrom", "--points", "1", "--out", out("a b")};
+    const Arguments arguments = {"--method", "refined", "--points", "1", "--out", out("a b")};
     const Finished plain = lodbench("sweep", arguments);
     EXPECT_EQ(plain.status, 0) << errors();
     EXPECT_THAT(plain.output, HasSubstr("report    lodbench report '" + out("a b") + "'\n"));
@@ -333,8 +335,8 @@ TEST_F(Trade, sweep_names_the_report_but_not_in_its_json) {
 
 TEST_F(Trade, economy_compares_a_frame_with_what_would_do_at_the_same_error) {
     const Json::Value flown =
-        json(lodbench("economy", {"--frame", "1", "--frame", "3", "--method", "lindstrom",
-                                  "--method", "full-grid", "--json", "--out", out()}));
+        json(lodbench("economy", {"--frame", "1", "--frame", "3", "--method", "refined", "--method",
+                                  "every-sample", "--json", "--out", out()}));
     ASSERT_EQ(flown["cells"].size(), 2U);
     for (const Json::Value& cell : flown["cells"]) {
         ASSERT_EQ(cell["economy"].size(), 2U) << cell["method"];
@@ -353,11 +355,11 @@ TEST_F(Trade, economy_compares_a_frame_with_what_would_do_at_the_same_error) {
                             frame["triangles"].asDouble(), 1e-3);
             }
         }
-        if (cell["method"] == "full-grid") {
+        if (cell["method"] == "every-sample") {
             EXPECT_EQ(cell["economy"][0]["triangles"].asUInt64(), 2U * 128 * 128);
         }
     }
-    EXPECT_THAT(text_of(fs::path(out()) / "economy.md"), HasSubstr("| lindstrom "));
+    EXPECT_THAT(text_of(fs::path(out()) / "economy.md"), HasSubstr("| refined "));
     EXPECT_EQ(lodbench("economy", {"--frame", "4", "--out", out("other")}).status, 2);
     EXPECT_THAT(errors(),
                 HasSubstr("--frame 4: [measure] economy = 4: write whole numbers from 0 to 3"));
@@ -369,14 +371,14 @@ TEST_F(Trade, what_needs_the_truth_measures_it_whatever_the_scenario_says) {
          {std::pair<std::string, Arguments>{"sweep", {"--points", "1"}},
           {"economy", {"--frame", "1"}},
           {"match", {"--error", "1", "--probes", "2"}}}) {
-        Arguments arguments = {"--method", "lindstrom", "--json", "--out", out(command)};
+        Arguments arguments = {"--method", "refined", "--json", "--out", out(command)};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Json::Value cell = json(lodbench(command, arguments))["cells"][0];
         EXPECT_TRUE(cell["pixel_error_px"]["p999"].isNumeric()) << command;
     }
     measure_ = "pixels_only = true\n";
     const Json::Value cell =
-        json(lodbench("economy", {"--frame", "1", "--method", "lindstrom", "--json", "--out",
+        json(lodbench("economy", {"--frame", "1", "--method", "refined", "--json", "--out",
                                   out("samples")}))["cells"][0];
     EXPECT_EQ(cell["status"], "ok") << cell["reason"];
     EXPECT_EQ(cell["economy"].size(), 1U);
@@ -392,13 +394,13 @@ TEST_F(Trade, out_of_core_an_error_is_matched_and_economy_refused) {
     terrain_ = "file = \"" + store + "\"\nout_of_core = true\n";
     measure_ = "truth = false\n";
     const auto match = [&](const Arguments& target) {
-        Arguments arguments = {"--method", "dltq", "--probes", "2", "--out", out("match")};
+        Arguments arguments = {"--method", "strided", "--probes", "2", "--out", out("match")};
         arguments.insert(arguments.end(), target.begin(), target.end());
         return lodbench("match", arguments).status;
     };
     EXPECT_EQ(match({"--error", "1"}), 0) << errors();
     EXPECT_GT(cells_of(out("match"))[0]["pixel_error_px"]["count"].asUInt64(), 0U);
-    const Arguments economy = {"--frame", "1", "--method", "dltq", "--out", out("economy")};
+    const Arguments economy = {"--frame", "1", "--method", "strided", "--out", out("economy")};
     EXPECT_EQ(lodbench("economy", economy).status, 2);
     EXPECT_THAT(errors(), HasSubstr("small.toml:3: out_of_core is set, but economy triangulates "
                                     "the whole terrain in memory"));

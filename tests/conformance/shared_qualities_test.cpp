@@ -31,7 +31,8 @@ CheckReport checked(const Subject& subject, const std::string& check, double lim
 }
 
 TEST(SharedQualities, the_first_check_that_asks_tells_the_others) {
-    const Subject subject = subject_of(LODBENCH_PLUGINS "/lindstrom.so", "lindstrom");
+    const Subject subject =
+        subject_of(LODBENCH_BUILD_DIR "/broken-plugins/stand_ins/stand_ins.so", "refined");
     EXPECT_EQ(checked(subject, "descriptor-is-sane").verdict, Verdict::passed);
     EXPECT_FALSE(*subject.qualities) << "nothing was asked for";
     EXPECT_EQ(checked(subject, "draw-is-idempotent").verdict, Verdict::passed);
@@ -43,7 +44,7 @@ TEST(SharedQualities, the_first_check_that_asks_tells_the_others) {
     ASSERT_TRUE(found.finest && found.coarse);
     EXPECT_EQ(found.finest->name, "tau = 0.01 (finest)");
     EXPECT_EQ(found.finest->claimed_px, 0.01);
-    EXPECT_EQ(found.coarse->settings, (run::Settings{{"tau", "8"}}));
+    EXPECT_EQ(found.coarse->settings, (run::Settings{{"tau", "16"}}));
 
     // What no search could find shows that none is made.
     found.coarse->name = "told";

@@ -1,5 +1,5 @@
-// Its id is that of one of the two methods of hybrid_patches.so.
+// Its id is that of one of the methods of stand_ins.so.
 
 #include "quiet_method.h"
 
-QUIET_PLUGIN(QuietMethod, "static-patches");
+QUIET_PLUGIN(QuietMethod, "refined");

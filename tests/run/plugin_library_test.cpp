@@ -135,10 +135,10 @@ TEST(PluginLibrary, a_newcomer_to_a_folder_does_not_take_the_place_of_lodbench_s
 }
 
 TEST(PluginLibrary, what_one_plugin_loses_to_another_does_not_cost_its_other_methods) {
-    const auto listings = list_plugins({broken("takes_an_id").parent_path(), LODBENCH_PLUGINS});
-    EXPECT_EQ(find_method(listings, "static-patches", "here").plugin, broken("takes_an_id"));
-    EXPECT_EQ(find_method(listings, "hybrid-patches", "here").plugin,
-              LODBENCH_PLUGINS "/hybrid_patches.so");
+    const auto listings =
+        list_plugins({broken("takes_an_id").parent_path(), broken("stand_ins").parent_path()});
+    EXPECT_EQ(find_method(listings, "refined", "here").plugin, broken("takes_an_id"));
+    EXPECT_EQ(find_method(listings, "every-sample", "here").plugin, broken("stand_ins"));
 }
 
 TEST(PluginLibrary, tells_how_the_compiler_was_called) {

@@ -46,6 +46,14 @@ inline std::string text_of(const fs::path& path) {
     return text.str();
 }
 
+inline std::string broken_plugin_folder(const std::string& name) {
+    return std::string(LODBENCH_BUILD_DIR) + "/broken-plugins/" + name;
+}
+
+/// What this program starts finds the methods of tests/plugins/stand_ins.cpp without being told.
+inline const int kStandInsAreFound =
+    setenv("LODBENCH_PLUGIN_PATH", broken_plugin_folder("stand_ins").c_str(), 1);
+
 /// Starts lodbench with its output in `log`; `prepare` runs in the child before it becomes
 /// lodbench.
 inline pid_t start_lodbench(const std::vector<std::string>& arguments, const fs::path& log,
@@ -111,10 +119,6 @@ inline std::vector<Json::Value> cells_of(const fs::path& out) {
         cells.push_back(results::parse_sealed(line, "cells.jsonl"));
     }
     return cells;
-}
-
-inline std::string broken_plugin_folder(const std::string& name) {
-    return std::string(LODBENCH_BUILD_DIR) + "/broken-plugins/" + name;
 }
 
 }  // namespace lodbench::test
