@@ -1,5 +1,5 @@
 #version 450 core
-// A block is a patch of one control point, whose number is the block's in the buffer.
+// A block is a patch of one control point, whose number is the block's place among those that are drawn.
 
 flat out int block_number;
 

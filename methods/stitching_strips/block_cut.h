@@ -44,6 +44,9 @@ public:
 
     /// Top down. The whole tree, in view or not: what is drawn of a strip depends on both sides.
     void update(const BlockMetric& metric);
+    /// The same once more in a frame, splitting besides the blocks of which `forced`, by number
+    /// from the root's, is not 0; those must be such as can be split.
+    void refine(const BlockMetric& metric, std::span<const char> forced);
 
     /// From each block's south-west child anti-clockwise.
     [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
@@ -57,7 +60,9 @@ public:
     [[nodiscard]] int changed() const { return changed_; }
 
 private:
-    void visit(const BlockMetric& metric, int block, const Neighbours& neighbours);
+    void visit(const BlockMetric& metric, int block, const Neighbours& neighbours,
+               std::span<const char> forced);
+    void count_changes();
 
     const BlockTree& tree_;
     std::vector<Leaf> leaves_;
