@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "api/error.h"
+#include "measure/map_size.h"
 
 namespace lodbench::measure {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kLongestMapSide = 512;  // cells of the top view
 
 std::optional<double> rmse(const HeightSums& heights) {
     if (heights.count == 0) return std::nullopt;
@@ -185,10 +185,9 @@ void TruthMeter::keep_if_worst(const FrameTruth& truth, const ErrorSummary& pixe
     worst_->pixels = std::move(pixels);
     worst_->truth = truth;
     worst_->pixel_max_covered = pixel.max_covered;
-    const TerrainInfo& info = terrain_.info();
-    const double cells = std::min(1.0, kLongestMapSide / double(std::max(info.rows, info.columns)));
-    worst_->map_rows = std::max(1, int(info.rows * cells));
-    worst_->map_columns = std::max(1, int(info.columns * cells));
+    const MapSize map(terrain_.info());
+    worst_->map_rows = map.rows;
+    worst_->map_columns = map.columns;
     if (extent_ == Extent::pixels) {
         worst_->map_px.assign(std::size_t(worst_->map_rows) * std::size_t(worst_->map_columns),
                               std::numeric_limits<float>::quiet_NaN());

@@ -39,6 +39,7 @@ struct FrameTruth {
     std::optional<double> silhouette_max_px;
     std::optional<double> popping_max_px, popping_p999_px;  ///< to the next frame
     std::optional<double> height_rmse_m;
+    std::optional<double> height_rmse_whole_m;  ///< see whole_heights.h; only where it is asked for
     std::optional<double> psnr_db, ssim;
 };
 

@@ -184,6 +184,12 @@ void add_truth(CellRecord& cell, const measure::TruthSummary& truth) {
     }
 }
 
+std::optional<WholeHeightFigures> figures_of(const measure::WholeHeightSummary& whole) {
+    if (whole.frames == 0) return std::nullopt;
+    return WholeHeightFigures{whole.rmse_max, whole.rmse_mean, whole.rmse_change_max,
+                              whole.covered_least};
+}
+
 CellRecord finish_cell(const CellName& name, const CellResult& result, double budget_ms) {
     CellRecord cell = result.cell;
     static_cast<CellName&>(cell) = name;

@@ -11,6 +11,7 @@
 #include "api/method.h"
 #include "measure/statistics.h"
 #include "measure/truth.h"
+#include "measure/whole_heights.h"
 #include "results/field.h"
 #include "results/frame.h"
 #include "results/record_json.h"
@@ -50,6 +51,11 @@ struct PoppingFigures {
 
 struct HeightFigures {
     std::optional<double> max, mean, change_max;
+};
+
+/// Over all samples of the terrain.
+struct WholeHeightFigures {
+    std::optional<double> max, mean, change_max, covered;
 };
 
 struct PictureFigures {
@@ -98,6 +104,7 @@ struct CellRecord : CellName {
     std::optional<SilhouetteFigures> silhouette_px;
     std::optional<PoppingFigures> popping_px;
     std::optional<HeightFigures> height_rmse_m;
+    std::optional<WholeHeightFigures> height_rmse_whole_m;
     std::optional<PictureFigures> image;
     std::optional<double> bound_honesty;
     std::optional<std::uint64_t> clipped_segments, unjudged_pixels, undecided_pixels,
@@ -152,6 +159,10 @@ void forget_measured(CellResult& result);
 
 /// Into a record without the truth's figures.
 void add_truth(CellRecord& cell, const measure::TruthSummary& truth);
+
+/// Nothing where no frame was measured.
+[[nodiscard]] std::optional<WholeHeightFigures> figures_of(
+    const measure::WholeHeightSummary& whole);
 
 /// The record of a cell, its times and counts summed up from the frames, whose budget is
 /// `budget_ms`.

@@ -91,6 +91,18 @@ struct FieldTable<HeightFigures> {
 };
 
 template <>
+struct FieldTable<WholeHeightFigures> {
+    using R = WholeHeightFigures;
+    static constexpr std::tuple fields{
+        Field{"max", &R::max, "m", "of the worst frame; null unless every frame covers all"},
+        Field{"mean", &R::mean, "m", "over the frames; likewise"},
+        Field{"change_max", &R::change_max, "m",
+              "greatest between a measured frame and the next one that is; likewise"},
+        Field{"covered", &R::covered, "ratio",
+              "samples of the terrain that a triangle covers, in the frame with the fewest"}};
+};
+
+template <>
 struct FieldTable<PictureFigures> {
     using R = PictureFigures;
     static constexpr std::tuple fields{
@@ -184,6 +196,9 @@ struct FieldTable<CellRecord> {
               "a turn brings in was not seen to pop"},
         Field{"height_rmse_m", &R::height_rmse_m, "",
               "root mean square of drawn minus true height over the samples in view"},
+        Field{"height_rmse_whole_m", &R::height_rmse_whole_m, "",
+              "the same over all samples of the terrain, out of view too, flown once more with "
+              "the method's parameter `culling` off; where `measure.whole` asks for it"},
         Field{"image", &R::image, "",
               "shaded picture against the full grid's. A surface without error that splits the "
               "cells along other diagonals is shaded otherwise"},
@@ -269,7 +284,7 @@ using Cell = CellRecord;
 using measure::TimeSummary;
 using results::CountSummary, results::ErrorFigures, results::TotalAndMax,
     results::SilhouetteFigures, results::PoppingFigures, results::HeightFigures,
-    results::PictureFigures;
+    results::WholeHeightFigures, results::PictureFigures;
 
 template <auto... Members>
 inline constexpr CellFigure of = figure<CellRecord, Members...>();

@@ -34,6 +34,7 @@ constexpr std::array kDeterministic = {
     DeterministicField{"silhouette_px", Elsewhere::rounded},
     DeterministicField{"popping_px", Elsewhere::rounded},
     DeterministicField{"height_rmse_m", Elsewhere::rounded},
+    DeterministicField{"height_rmse_whole_m", Elsewhere::rounded},
     DeterministicField{"image", Elsewhere::rounded},
     DeterministicField{"bound_honesty", Elsewhere::rounded},
     DeterministicField{"clipped_segments", Elsewhere::exactly},

@@ -57,6 +57,8 @@ struct FieldTable<FrameRecord> {
         Field{"popping_p999_px", &R::popping_p999_px, "px", "P99.9 of it"},
         Field{"height_rmse_m", &R::height_rmse_m, "m",
               "root mean square of drawn minus true height, samples in view"},
+        Field{"height_rmse_whole_m", &R::height_rmse_whole_m, "m",
+              "the same over all samples of the terrain, flown with culling off"},
         Field{"psnr_db", &R::psnr_db, "dB", "shaded picture against the full grid's"},
         Field{"ssim", &R::ssim, "", "likewise"}};
 };

@@ -74,7 +74,7 @@ public:
         open();
         prepare();
         choose_frames();
-        const int replays = measures_realtime() ? 3 : 2;
+        const int replays = 2 + int(measures_realtime()) + int(measures_whole());
         signs_.frames_total = replays * (scenario_.warmup_frames + scenario_.frames);
         fly_for_time();
         // The method's own: what measuring needs comes later.
@@ -84,6 +84,7 @@ public:
         result_.cell.terrain_bytes_read = stage_->served().bytes_read();
         fly_in_lockstep();
         if (measures_realtime()) fly_in_real_time();
+        if (measures_whole()) fly_for_whole();
         measurer_->finish(result_.cell);
         measurer_->write_picture(shot_path("worst"), spec_.id);
         measurer_.reset();
@@ -110,12 +111,14 @@ private:
     void open();
     [[nodiscard]] std::string plugin_checksum() const;
     void warn(std::string words);
-    void make_stage();
+    void make_stage(const Settings& settings);
+    void start_anew(const Settings& settings);  ///< a method as fresh as for the timing replay
     void prepare();
     void choose_frames();
     void fly_for_time();
     void fly_in_lockstep();
     void fly_in_real_time();
+    void fly_for_whole();
     void warm_up();
     [[nodiscard]] bool is_asynchronous() const {
         return (stage_->method().capabilities & kAsynchronous) != 0;
@@ -124,6 +127,14 @@ private:
     /// Lockstep replays agree to the bit: one repetition says it all.
     [[nodiscard]] bool measures_truth() const {
         return scenario_.measure.truth && spec_.repetition == 0;
+    }
+    [[nodiscard]] bool measures_whole() const {
+        return scenario_.measure.whole && measures_truth();
+    }
+    /// The cell's, with culling off where the method has it.
+    [[nodiscard]] Settings settings_without_culling() const;
+    [[nodiscard]] bool is_shot(int frame) const {
+        return std::ranges::find(shots_, frame) != shots_.end();
     }
     /// What is measured against; nothing where nothing is.
     [[nodiscard]] std::shared_ptr<const terrain::WholeTerrain> whole_terrain() const;
@@ -192,7 +203,7 @@ void Flight::open() {
         static_cast<void>(PluginLibrary(spec_.plugin));
         base::await_debugger();
     }
-    make_stage();
+    make_stage(spec_.settings);
     if (const std::string now = plugin_checksum(); now != result_.cell.plugin_checksum) {
         // Which of the two was opened nobody knows: the cell has none.
         const std::string before = std::exchange(result_.cell.plugin_checksum, "");
@@ -227,13 +238,13 @@ std::string Flight::plugin_checksum() const {
     }
 }
 
-void Flight::make_stage() {
+void Flight::make_stage(const Settings& settings) {
     stage_.reset();  // one context at a time
     stage_ = std::make_unique<Stage>(
         StageSetup{.terrain = methods_terrain_,
                    .plugin = spec_.plugin,
                    .method = spec_.method,
-                   .settings = spec_.settings,
+                   .settings = settings,
                    .device = spec_.device,
                    .warn = [this](std::string words) { warn(std::move(words)); }},
         signs_);
@@ -355,7 +366,7 @@ void Flight::fly_in_lockstep() {
                     spec_.plugin.filename().string(), timing_hash_, result_.cell.depth_hash));
             }
         }
-        if (std::ranges::find(shots_, frame) != shots_.end()) {
+        if (is_shot(frame)) {
             stage_->draw_picture();
             stage_->add_depth_to(shots_hash);
             if (spec_.repetition == 0) shoot(frame);
@@ -398,16 +409,20 @@ void Flight::measure_frame(int frame) {
     measurer_->find_economy();
 }
 
-/// A method as fresh as in the timing replay: what the lockstep replay loaded and settled would
-/// flatter it. Frame f begins when the frames before it had taken what they took in the timing
-/// replay; the time that measuring takes stands still.
-void Flight::fly_in_real_time() {
+void Flight::start_anew(const Settings& settings) {
     stage_->release();
-    make_stage();
+    make_stage(settings);
     stage_->prepare();
     stage_->upload();
     stage_->resize(scenario_.viewport);
     measurer_->move_to(*stage_);
+}
+
+/// A method as fresh as in the timing replay: what the lockstep replay loaded and settled would
+/// flatter it. Frame f begins when the frames before it had taken what they took in the timing
+/// replay; the time that measuring takes stands still.
+void Flight::fly_in_real_time() {
+    start_anew(spec_.settings);
     begin_replay(Replay::realtime);
     warm_up();
     const Stopwatch clock;
@@ -439,6 +454,37 @@ void Flight::fly_in_real_time() {
             "the real-time replay fell {:.1f} ms behind the timing replay's pace, over {:.1f} ms: "
             "background work had more time than that pace gives it",
             late_s * 1e3, begins_s * 1e3));
+    }
+}
+
+Settings Flight::settings_without_culling() const {
+    Settings settings = spec_.settings;
+    if (culling_param(stage_->method()) == nullptr) return settings;
+    std::erase_if(settings, [](const auto& setting) { return setting.first == "culling"; });
+    settings.emplace_back("culling", "false");
+    return settings;
+}
+
+/// The flight once more in lockstep, for the surface that a method draws of all the terrain. What
+/// was measured of it with culling stays as it is.
+void Flight::fly_for_whole() {
+    start_anew(settings_without_culling());
+    begin_replay(Replay::whole);
+    warm_up();
+    for (int frame = 0; frame < scenario_.frames; ++frame) {
+        begin_frame(frame);
+        stage_->select(camera_at(frame), clock_at(frame));
+        stage_->settle();
+        if (frame % scenario_.measure.every != 0) continue;
+        stage_->pause_background();
+        measurer_->measure_whole(result_.frames[std::size_t(frame)]);
+        if (is_shot(frame)) {
+            measurer_->write_heights(
+                shot_path(fmt::format("f{:05}__heights", frame)),
+                fmt::format("{}, frame {}: height difference over all of the terrain", spec_.id,
+                            frame));
+        }
+        stage_->resume_background();
     }
 }
 

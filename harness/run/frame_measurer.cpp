@@ -6,10 +6,18 @@
 #include <cmath>
 #include <utility>
 
+#include "picture/heights_picture.h"
 #include "picture/png.h"
 #include "picture/truth_picture.h"
 
 namespace lodbench::run {
+
+const ParamInfo* culling_param(const MethodInfo& method) {
+    const auto found = std::ranges::find_if(method.params, [](const ParamInfo& param) {
+        return param.name == "culling" && param.type == ParamType::boolean;
+    });
+    return found == method.params.end() ? nullptr : &*found;
+}
 
 FrameMeasurer::FrameMeasurer(Stage& stage, std::optional<double> claimed,
                              std::shared_ptr<const terrain::WholeTerrain> truth, ViewCache views,
@@ -87,10 +95,30 @@ void FrameMeasurer::measure_realtime(int frame) {
     meter_->measure_realtime(frame, camera, std::move(surface), hits, stage_->read_depth());
 }
 
+void FrameMeasurer::measure_whole(results::FrameRecord& record) {
+    whole_camera_ = stage_->camera();
+    const measure::DrawnSurface drawn(capture(), meter_->terrain().info());
+    if (!whole_.empty()) whole_.back().map_m = {};  // a megabyte a frame
+    whole_.push_back(measure::measure_whole_heights(meter_->terrain(), drawn));
+    record.height_rmse_whole_m = whole_.back().rmse();
+}
+
+void FrameMeasurer::warn_of_the_whole(results::CellRecord& cell) const {
+    if (!cell.height_rmse_whole_m || cell.height_rmse_whole_m->mean) return;
+    cell.warnings.push_back(fmt::format(
+        "covers {:.4g} % of the terrain's samples in the frame with the fewest, {}: there is no "
+        "height error of the whole",
+        100 * cell.height_rmse_whole_m->covered.value_or(0),
+        culling_param(stage_->method()) ? "with culling off"
+                                        : "and has no parameter `culling` to turn off"));
+}
+
 void FrameMeasurer::finish(results::CellRecord& cell) const {
     if (!meter_) return;
     const measure::TruthSummary summary = meter_->summary();
     results::add_truth(cell, summary);
+    cell.height_rmse_whole_m = results::figures_of(measure::summarize(whole_));
+    warn_of_the_whole(cell);
     if (summary.walls > 0) {
         cell.warnings.push_back(fmt::format(
             "up to {} upright triangles of a frame stand above the surface, where no error is "
@@ -112,6 +140,50 @@ void FrameMeasurer::finish(results::CellRecord& cell) const {
     }
 }
 
+std::vector<float> FrameMeasurer::map_heights(int rows, int columns) const {
+    const measure::ReferenceTerrain& terrain = meter_->terrain();
+    const auto middle = [](int cell, int cells, int samples) {
+        return int((2 * std::int64_t(cell) + 1) * samples / (2 * std::int64_t(cells)));
+    };
+    std::vector<float> heights;
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            heights.push_back(
+                float(terrain.height(middle(row, rows, terrain.info().rows),
+                                     middle(column, columns, terrain.info().columns))));
+        }
+        terrain.forget();
+    }
+    return heights;
+}
+
+void FrameMeasurer::write_heights(const std::filesystem::path& path,
+                                  const std::string& title) const {
+    const measure::WholeHeights& whole = whole_.back();
+    picture::HeightsPicture picture{.camera = whole_camera_,
+                                    .terrain = meter_->terrain().info(),
+                                    .map_rows = whole.map.rows,
+                                    .map_columns = whole.map.columns,
+                                    .map_height = map_heights(whole.map.rows, whole.map.columns),
+                                    .map_error_m = whole.map_m,
+                                    .title = title,
+                                    .caption = {}};
+    float greatest = 0;
+    for (const float error : whole.map_m) {
+        if (std::isfinite(error)) greatest = std::max(greatest, error);
+    }
+    picture.scale_m = picture::nice_scale(double(greatest));
+    const std::optional<double> rmse = whole.rmse();
+    picture.caption = {
+        rmse ? fmt::format("root mean square {:.4g} m over {} samples, greatest {:.4g} m", *rmse,
+                           whole.samples, greatest)
+             : fmt::format(
+                   "{} of {} samples are covered; of them the greatest difference is {:.4g} m",
+                   whole.covered, whole.samples, greatest)};
+    const picture::Image image = picture::draw(picture);
+    picture::write_png(path, image.width, image.height, image.rgb);
+}
+
 void FrameMeasurer::write_picture(const std::filesystem::path& path,
                                   const std::string& title) const {
     if (!meter_ || !meter_->worst_frame()) return;
@@ -131,18 +203,7 @@ void FrameMeasurer::write_picture(const std::filesystem::path& path,
     picture.map_rows = worst.map_rows;
     picture.map_columns = worst.map_columns;
     picture.map_error_px = worst.map_px;
-    for (int row = 0; row < worst.map_rows; ++row) {
-        for (int column = 0; column < worst.map_columns; ++column) {
-            // The sample in the middle of the cell.
-            const auto middle = [](int cell, int cells, int samples) {
-                return int((2 * std::int64_t(cell) + 1) * samples / (2 * std::int64_t(cells)));
-            };
-            picture.map_height.push_back(
-                float(terrain.height(middle(row, worst.map_rows, terrain.info().rows),
-                                     middle(column, worst.map_columns, terrain.info().columns))));
-        }
-        terrain.forget();
-    }
+    picture.map_height = map_heights(worst.map_rows, worst.map_columns);
     // A scale to P99.9, so that one pixel does not darken all others; uncovered places have a
     // colour of their own.
     const double p999 = worst.truth.pixel_p999_px.value_or(0);

@@ -6,13 +6,19 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "measure/truth.h"
+#include "measure/whole_heights.h"
 #include "run/cell.h"
 #include "run/stage.h"
 #include "run/view_cache.h"
 
 namespace lodbench::run {
+
+/// The method's parameter that turns leaving out what is out of view off: `culling`, a boolean.
+/// nullptr where it has none.
+[[nodiscard]] const ParamInfo* culling_param(const MethodInfo& method);
 
 /// The method's background work is paused by the caller while anything here is called.
 class FrameMeasurer {
@@ -38,14 +44,22 @@ public:
     void find_economy();
     /// The frozen selection as the real-time replay has it.
     void measure_realtime(int frame);
+    /// The height error of the frozen selection over all of the terrain, into its record. Needs the
+    /// truth.
+    void measure_whole(results::FrameRecord& record);
 
     /// The truth about the flight; nothing without it.
     void finish(results::CellRecord& cell) const;
     /// The worst frame's picture as PNG; does nothing where no frame was measured.
     void write_picture(const std::filesystem::path& path, const std::string& title) const;
+    /// The map of what measure_whole found last, as PNG. `title`: which frame of which cell.
+    void write_heights(const std::filesystem::path& path, const std::string& title) const;
 
 private:
     [[nodiscard]] measure::CapturedSurface capture();
+    /// Of the sample in the middle of each cell of a map.
+    [[nodiscard]] std::vector<float> map_heights(int rows, int columns) const;
+    void warn_of_the_whole(results::CellRecord& cell) const;
     [[nodiscard]] measure::ReferenceView reference_view();  ///< of the frame that was taken last
 
     Stage* stage_;
@@ -53,8 +67,10 @@ private:
     std::optional<measure::TruthMeter> meter_;
     ViewCache views_;
     measure::Extent extent_;
-    int frame_ = 0;                    ///< that was taken last
-    std::uint64_t nondegenerate_ = 0;  ///< of the frame that was taken last
+    std::vector<measure::WholeHeights> whole_;  ///< of each frame that was measured so
+    Camera whole_camera_;                       ///< of the last of them
+    int frame_ = 0;                             ///< that was taken last
+    std::uint64_t nondegenerate_ = 0;           ///< of the frame that was taken last
 };
 
 }  // namespace lodbench::run

@@ -243,6 +243,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             override_with(probe, "run.repetitions", "1");
             override_with(probe, "measure.truth", of_the_truth ? "true" : "false");
             override_with(probe, "measure.economy", "[]");
+            override_with(probe, "measure.whole", "false");
             // The error that is to be equal is the pixels'.
             override_with(probe, "measure.pixels_only", "true");
             watch.begin_flight();

@@ -28,7 +28,7 @@ const char* name_of(Call call) {
 }
 
 const char* name_of(Replay replay) {
-    constexpr std::array kNames = {"no", "timing", "lockstep", "real-time"};
+    constexpr std::array kNames = {"no", "timing", "lockstep", "real-time", "whole-terrain"};
     return kNames.at(std::size_t(replay));
 }
 

@@ -31,7 +31,7 @@ enum class Call : std::uint32_t {
 [[nodiscard]] const char* name_of(Call call);
 
 /// The passes over a flight. Each measures something that the others would disturb.
-enum class Replay : std::int32_t { none, timing, lockstep, realtime };
+enum class Replay : std::int32_t { none, timing, lockstep, realtime, whole };
 [[nodiscard]] const char* name_of(Replay replay);
 
 /// Lives in the shared page. Written by the child, read by the parent.

@@ -196,6 +196,7 @@ void read_measure_and_run(Section& top, Scenario& scenario) {
         set(scenario.measure.every, measure->integer("every", 1, kMaxFrames));
         set(scenario.measure.truth, measure->boolean("truth"));
         set(scenario.measure.pixels_only, measure->boolean("pixels_only"));
+        set(scenario.measure.whole, measure->boolean("whole"));
         const auto frames = [&](const char* key, std::vector<int>& list) {
             auto given = measure->integers(key, 0, scenario.frames - 1);
             if (!given) return;

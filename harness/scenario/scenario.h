@@ -29,6 +29,7 @@ struct MeasureOptions {
     int every = 10;            ///< measure every n-th frame of the lockstep replay; >= 1
     bool truth = true;         ///< measure what those frames really show: errors, cracks, popping
     bool pixels_only = false;  ///< of the truth what the pixels say, not what all samples do
+    bool whole = false;        ///< height error over all of the terrain, in a replay of its own
     std::vector<int>
         shots;  ///< frames drawn to PNG (picture and wireframe); empty: first, middle, last
     std::vector<int> economy;  ///< frames compared with a near-minimal triangulation

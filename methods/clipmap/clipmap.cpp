@@ -18,9 +18,9 @@
 
 #include "api/method.h"
 #include "clipmap/height_levels.h"
-#include "clipmap/height_ranges.h"
 #include "clipmap/rings.h"
 #include "clipmap/tent_terrain.h"
+#include "common/height_ranges.h"
 #include "common/toroidal_window.h"
 #include "common/view_frustum.h"
 #include "gl/device.h"
@@ -381,7 +381,7 @@ private:
 
     Options options_;
     TerrainInfo info_;
-    std::optional<HeightRanges> ranges_;
+    std::optional<common::HeightRanges> ranges_;
     std::optional<TentTerrain> tent_;
     std::optional<HeightLevels> heights_;
     std::vector<common::ToroidalWindow> windows_;  ///< of each level, whatever is active

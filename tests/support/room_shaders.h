@@ -18,7 +18,7 @@ class RoomShaders {
 public:
     /// `room`: a folder of methods/.
     explicit RoomShaders(const std::string& room) {
-        const std::set<std::string> kinds = {".glsl", ".vert", ".frag", ".comp"};
+        const std::set<std::string> kinds = {".glsl", ".vert", ".tesc", ".tese", ".frag", ".comp"};
         for (const auto& file : std::filesystem::directory_iterator(
                  std::filesystem::path(LODBENCH_SOURCE_DIR) / "methods" / room)) {
             if (!kinds.contains(file.path().extension().string())) continue;

@@ -70,6 +70,8 @@ void add_popping(Page& page, const ResultSet& set) {
         {"uncovered samples", of<&Cell::uncovered_samples>, 0},
         {"silhouette max, px", of<&Cell::silhouette_px, &SilhouetteFigures::max>, 2},
         {"height RMS, m, mean", of<&Cell::height_rmse_m, &HeightFigures::mean>, 3},
+        {"height RMS of the whole, m, mean",
+         of<&Cell::height_rmse_whole_m, &WholeHeightFigures::mean>, 3},
         {"PSNR, dB", of<&Cell::image, &PictureFigures::psnr_db>, 2},
         {"SSIM", of<&Cell::image, &PictureFigures::ssim>, 5}};
     if (!any_has(set, of<&Cell::truth_frames>)) page.not_measured(kNoTruth);

@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "clipmap/height_levels.cpp"  // the room is a plugin, not a library
-#include "clipmap/height_ranges.h"
 #include "clipmap/rings.h"
 #include "clipmap/tent_terrain.cpp"
 #include "support/fake_terrain.h"
@@ -226,31 +225,6 @@ TEST(HeightLevels, ground_height_is_bilinear_and_of_a_coarser_level_while_the_fi
     EXPECT_DOUBLE_EQ(heights.ground_height(place), 3 * 200.5 + 2 * 100.25 + 1000);
     EXPECT_DOUBLE_EQ(heights.ground_height({1024, 1024}), 5 * 1024.0);
     EXPECT_DOUBLE_EQ(heights.ground_height({0, 0}), 0);
-}
-
-TEST(HeightRanges, bound_all_samples_of_a_rectangle_also_where_it_reaches_beyond_the_grid) {
-    const auto terrain = test::hills(200, 333);
-    const HeightRanges ranges(*terrain);
-    const TerrainInfo& info = terrain->info();
-    const HeightGrid grid{
-        info.columns, info.rows, {terrain->samples().begin(), terrain->samples().end()}};
-    std::mt19937 random(9);
-    const auto pick = [&](int low, int high) {
-        return std::uniform_int_distribution<int>(low, high)(random);
-    };
-    for (int i = 0; i < 500; ++i) {
-        const glm::ivec2 low(pick(-90, info.columns + 50), pick(-90, info.rows + 50));
-        const glm::ivec2 high = low + glm::ivec2(pick(0, 90), pick(0, 90));
-        const glm::vec2 range = ranges.within(low, high);
-        ASSERT_LE(info.min_height, range.x);
-        ASSERT_GE(info.max_height, range.y);
-        for (int y = low.y; y <= high.y; ++y) {
-            for (int x = low.x; x <= high.x; ++x) {
-                ASSERT_LE(range.x, grid.nearest(x, y));
-                ASSERT_GE(range.y, grid.nearest(x, y));
-            }
-        }
-    }
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "api/terrain.h"
 
-namespace lodbench::clipmap {
+namespace lodbench::common {
 
 /// x: lowest, y: highest, metres.
 class HeightRanges {
@@ -59,4 +59,4 @@ private:
     std::vector<glm::vec2> ranges_;  ///< by TilePyramid::index
 };
 
-}  // namespace lodbench::clipmap
+}  // namespace lodbench::common
