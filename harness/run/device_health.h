@@ -41,7 +41,7 @@ public:
         FindGpu find_gpu;
         CpuSensors cpu;
         std::chrono::milliseconds interval{1000};  ///< between samples
-        std::chrono::milliseconds patience{2000};  ///< with sensors that do not answer
+        std::chrono::milliseconds patience{10000};  ///< with sensors that do not answer
         /// The sensors of this machine, as SensorPlaces::from_environment has them.
         [[nodiscard]] static Setup of_this_machine();
     };

@@ -182,6 +182,21 @@ TEST(DeviceHealth, a_driver_that_does_not_answer_holds_nobody_up) {
     answer.set_value();  // its thread ends
 }
 
+TEST(GpuNote, gives_back_names_and_uuids_and_nothing_else) {
+    run::GpuNote note;
+    note.write({"renderD128", "11111111-2222-3333-4444-555555555555", "NVIDIA Corporation", true});
+    platform::GpuIdentity read = note.read();
+    EXPECT_EQ(read.node, "renderD128");
+    EXPECT_EQ(read.uuid, "11111111-2222-3333-4444-555555555555");
+    EXPECT_EQ(read.vendor, "NVIDIA Corporation");
+    EXPECT_TRUE(read.software);
+    note.write({"../../etc", "../x", "\x1b[31m", false});  // what a plugin may have scribbled there
+    read = note.read();
+    EXPECT_EQ(read.node + read.uuid + read.vendor, "");
+    note.write({std::string(100, 'c'), "", "", false});
+    EXPECT_EQ(note.read().node, std::string(31, 'c')) << "cut, and ended";
+}
+
 TEST(CpuSensors, are_the_governor_the_fastest_core_and_what_slowed_them_down) {
     FakeSensors fake;
     const fs::path cpu = "sys/devices/system/cpu";
