@@ -87,6 +87,18 @@ void CampaignOptions::add_request(CLI::App& command) {
                  "repetitions of each cell")
         ->check(CLI::Range(1, 1000));
     add_device(command, request.device);
+    command
+        .add_option("--cool-down", request.cool_down_s,
+                    "seconds to wait before each cell but the first, so that GPU and CPU cool down")
+        ->type_name("S")
+        ->check([](const std::string& text) -> std::string {
+            constexpr double kMost = 3600;
+            double seconds = -1;
+            if (CLI::detail::lexical_cast(text, seconds) && seconds >= 0 && seconds <= kMost) {
+                return {};
+            }
+            return fmt::format("'{}': expected seconds, from 0 to {:g}", text, kMost);
+        });
 }
 
 void CampaignOptions::add_to(CLI::App& command) {
@@ -181,6 +193,10 @@ void Progress::cell_progress(const run::PlannedCell& cell, std::size_t index, st
                              double fraction) {
     redraw(fmt::format("[{}/{}] {} {:.0f} %{}", index + 1, count, cell.spec.id, 100 * fraction,
                        time_left(count - index, fraction)));
+}
+
+void Progress::cooling_down(double left_s) {
+    redraw(fmt::format("cooling down, {} left", minutes_text(left_s)));
 }
 
 void Progress::redraw(const std::string& text) {

@@ -25,8 +25,8 @@ public:
     /// Removes the folder that `finish` made where nothing was written into it.
     ~CampaignOptions();
 
-    /// Adds --method, --set, --plugin-dir, --frames, --size, --override, --seed, --repeat and
-    /// --device: what is flown.
+    /// Adds --method, --set, --plugin-dir, --frames, --size, --override, --seed, --repeat,
+    /// --device and --cool-down: what is flown.
     void add_request(CLI::App& command);
     /// And --out and --json.
     void add_to(CLI::App& command);
@@ -64,6 +64,7 @@ public:
     void noisy(const std::string& words) override;
     void cell_progress(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        double fraction) override;
+    void cooling_down(double left_s) override;
     void cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        const results::CellRecord& record) override;
     [[nodiscard]] std::string summary(const run::CampaignOutcome& outcome,

@@ -70,13 +70,17 @@ Division divide(Options& options) {
     division.warnings = plan.warnings;
     division.blocks = run::blocks_of(plan);
     division.of_shard.resize(std::size_t(options.shards));
+    const double pause_s = options.request.cool_down_s.value_or(0);
     for (std::size_t i = 0; i < division.blocks.size(); ++i) {
+        Part& shard = division.of_shard[std::size_t(run::Block::shard_of(i, options.shards) - 1)];
         Part part{1, 0, 0.0};
         for (const std::size_t cell : division.blocks[i].cells) {
-            part.add({0, 1, expected.of(plan.cells[cell])});
+            const bool is_first = shard.cells + part.cells == 0;  // which nothing heated before
+            part.add({0, 1, is_first ? 0 : pause_s});
+            part.add({0, 0, expected.of(plan.cells[cell])});
         }
         division.of_block.push_back(part);
-        division.of_shard[std::size_t(run::Block::shard_of(i, options.shards) - 1)].add(part);
+        shard.add(part);
         division.whole.add(part);
     }
     return division;

@@ -229,6 +229,70 @@ std::optional<int> as_number(const std::string& text) {
     return number;
 }
 
+/// The name of a display's device file, "card0"; "" where EGL does not say. Asked of the display,
+/// for Mesa's surfaceless platform chooses a device by itself.
+std::string device_node(EGLDisplay display) {
+    const auto query_display = load<PFNEGLQUERYDISPLAYATTRIBEXTPROC>("eglQueryDisplayAttribEXT");
+    const auto query_string = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+    const std::string client = text_or_empty(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));
+    EGLAttrib attribute = 0;
+    if (!(names(client, "EGL_EXT_device_base") || names(client, "EGL_EXT_device_query")) ||
+        query_display == nullptr || query_string == nullptr ||
+        query_display(display, EGL_DEVICE_EXT, &attribute) == EGL_FALSE || attribute == 0) {
+        return {};
+    }
+    auto* const device = reinterpret_cast<EGLDeviceEXT>(attribute);
+    const std::string extensions = text_or_empty(query_string(device, EGL_EXTENSIONS));
+    std::string file;
+    if (names(extensions, "EGL_EXT_device_drm")) {
+        file = text_or_empty(query_string(device, EGL_DRM_DEVICE_FILE_EXT));
+    }
+    if (file.empty() && names(extensions, "EGL_EXT_device_drm_render_node")) {
+        constexpr EGLint kRenderNodeFile = 0x3377;  // EGL_DRM_RENDER_NODE_FILE_EXT
+        file = text_or_empty(query_string(device, kRenderNodeFile));
+    }
+    return file.substr(file.rfind('/') + 1);
+}
+
+/// The UUID of the current context's only device, as GL_EXT_memory_object has it; NVIDIA's driver
+/// gives the same to NVML. "" where the driver does not say, or draws on several.
+std::string device_uuid() {
+    constexpr GLenum kDeviceCount = 0x9596;  // GL_NUM_DEVICE_UUIDS_EXT
+    constexpr GLenum kDeviceUuid = 0x9597;   // GL_DEVICE_UUID_EXT
+    constexpr std::string_view kExtension = "GL_EXT_memory_object";
+    GLint extensions = 0;
+    glGetIntegerv(GL_NUM_EXTENSIONS, &extensions);
+    bool offered = false;
+    for (GLint i = 0; i < extensions && !offered; ++i) {
+        offered =
+            kExtension == reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, GLuint(i)));
+    }
+    using GetBytes = void (*)(GLenum, GLuint, GLubyte*);
+    const auto get_bytes = load<GetBytes>("glGetUnsignedBytei_vEXT");
+    GLint count = 0;
+    if (offered) glGetIntegerv(kDeviceCount, &count);
+    if (count != 1 || get_bytes == nullptr) return {};
+    std::array<GLubyte, 16> bytes{};
+    get_bytes(kDeviceUuid, 0, bytes.data());
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const bool dashed = i == 4 || i == 6 || i == 8 || i == 10;
+        text += fmt::format("{}{:02x}", dashed ? "-" : "", bytes[i]);
+    }
+    return text;
+}
+
+/// The context is current.
+GpuIdentity gpu_of(EGLDisplay display, const std::string& renderer) {
+    GpuIdentity gpu;
+    gpu.vendor = text_or_empty(reinterpret_cast<const char*>(glGetString(GL_VENDOR)));
+    gpu.software = is_software(renderer);
+    if (gpu.software) return gpu;
+    gpu.node = device_node(display);
+    gpu.uuid = device_uuid();
+    return gpu;
+}
+
 /// What was current before, current again at the end.
 class KeepCurrent {
 public:
@@ -297,6 +361,7 @@ private:
 struct Context::Impl {
     Opened opened;
     std::string description;
+    GpuIdentity gpu;
 };
 
 Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
@@ -335,6 +400,7 @@ Context::Context(const std::string& device) : impl_(std::make_unique<Impl>()) {
                 continue;
             }
             impl_->description = name;
+            impl_->gpu = gpu_of(opened->display(), opened->renderer);
             impl_->opened = std::move(*opened);
             return;
         }
@@ -364,6 +430,10 @@ std::unique_ptr<gl::SharedContext> Context::make_shared() const {
 
 const std::string& Context::description() const {
     return impl_->description;
+}
+
+const GpuIdentity& Context::gpu() const {
+    return impl_->gpu;
 }
 
 }  // namespace lodbench::platform

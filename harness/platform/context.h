@@ -18,6 +18,14 @@ struct DeviceEntry {
 
 [[nodiscard]] std::vector<DeviceEntry> list_devices();
 
+/// Which GPU a context draws on, as far as its driver says: what finds the GPU's sensors.
+struct GpuIdentity {
+    std::string node;    ///< name of its file in /dev/dri: "card0", "renderD128"; "" where not said
+    std::string uuid;    ///< 8-4-4-4-12 hex digits (GL_EXT_memory_object); "" where not said
+    std::string vendor;  ///< GL_VENDOR
+    bool software = false;
+};
+
 /// An OpenGL 4.5 core debug context without a surface, current on the creating thread until
 /// destroyed.
 class Context {
@@ -36,6 +44,7 @@ public:
 
     /// What was chosen, in words.
     [[nodiscard]] const std::string& description() const;
+    [[nodiscard]] const GpuIdentity& gpu() const;
 
 private:
     struct Impl;

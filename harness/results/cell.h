@@ -74,6 +74,24 @@ struct EconomyFrame {
     std::optional<FewestFigures> p999, max;
 };
 
+/// A sensor over the samples of a cell's timing replay.
+struct SensorFigures {
+    std::optional<double> begin, end, min, max, mean;
+};
+
+/// What the machine's sensors said while a cell was timed.
+struct HealthFigures {
+    std::optional<int> samples;
+    std::optional<double> seconds;
+    std::optional<SensorFigures> gpu_mhz, gpu_c, gpu_w, cpu_mhz, load_average;
+    std::optional<double> gpu_fall, gpu_limit_c;
+    std::optional<std::vector<std::string>> gpu_throttle;  ///< empty: none was seen
+    std::optional<std::uint64_t> cpu_throttles;
+    std::optional<double> cgroup_held_s;
+    std::optional<double> others_cores, idle_cores;
+    std::optional<int> cores;
+};
+
 /// Which cell of a campaign it is.
 struct CellName {
     std::string cell;  ///< file-name safe, unique in the campaign: "lindstrom__tau=1__demo__r0"
@@ -127,6 +145,7 @@ struct CellRecord : CellName {
     int warmup_frames = 0, frames_in_flight = 0;
     std::vector<std::string> modules;
     std::string noise;
+    std::optional<HealthFigures> health;
     std::vector<std::string> warnings;
     std::string frames_checksum;
 };

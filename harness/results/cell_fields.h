@@ -138,6 +138,51 @@ struct FieldTable<EconomyFrame> {
 };
 
 template <>
+struct FieldTable<SensorFigures> {
+    using R = SensorFigures;
+    static constexpr std::tuple fields{
+        Field{"begin", &R::begin, "", "of the first, as the replay's warm-up frames began"},
+        Field{"end", &R::end, "", "of the last, taken in the last fifth of its frames"},
+        Field{"min", &R::min, "", "least of all samples"},
+        Field{"max", &R::max, "", "greatest of all samples"},
+        Field{"mean", &R::mean, "", "of all samples"}};
+};
+
+template <>
+struct FieldTable<HealthFigures> {
+    using R = HealthFigures;
+    static constexpr std::tuple fields{
+        Field{"samples", &R::samples, "",
+              "how often the sensors were read while it drew: as it began, each second, and near "
+              "its end"},
+        Field{"seconds", &R::seconds, "s",
+              "from the first sample until it was over: the time in which the figures below, from "
+              "`cpu_throttles` on, are counted"},
+        Field{"gpu_mhz", &R::gpu_mhz, "MHz", "clock of the GPU that drew"},
+        Field{"gpu_c", &R::gpu_c, "°C", "its temperature"},
+        Field{"gpu_w", &R::gpu_w, "W", "its power"},
+        Field{"cpu_mhz", &R::cpu_mhz, "MHz", "clock of the fastest core that the cell may use"},
+        Field{"load_average", &R::load_average, "",
+              "processes that ran or waited to, mean of a minute: of the cell, of the cell before "
+              "it, and of others"},
+        Field{"gpu_fall", &R::gpu_fall, "ratio",
+              "greatest fall of the GPU's clock from a sample to a later one, of the former"},
+        Field{"gpu_limit_c", &R::gpu_limit_c, "°C",
+              "temperature at which the GPU's maker slows it down"},
+        Field{"gpu_throttle", &R::gpu_throttle, "",
+              "why the GPU was held below its clock, in any of the samples; empty: it was not"},
+        Field{"cpu_throttles", &R::cpu_throttles, "",
+              "how often cores that the cell may use were slowed down for heat"},
+        Field{
+            "cgroup_held_s", &R::cgroup_held_s, "s",
+            "for which CPU quotas of control groups held processes back, summed over their cores"},
+        Field{"others_cores", &R::others_cores, "cores",
+              "that other programs took, of those that the cell may use; from half a second on"},
+        Field{"idle_cores", &R::idle_cores, "cores", "of these, that nobody used"},
+        Field{"cores", &R::cores, "", "that the cell may use"}};
+};
+
+template <>
 struct FieldTable<CellRecord> {
     using R = CellRecord;
     static constexpr std::tuple fields{
@@ -267,6 +312,9 @@ struct FieldTable<CellRecord> {
               "not, cannot be told, or the flight took less than half a second. `run.json` has "
               "`noise` of the machine: a CPU quota or a load average (`load_average`) above the "
               "cores"},
+        Field{"health", &R::health, "",
+              "what the sensors of GPU and CPU said while the timing replay was flown; null where "
+              "it was over before they could be read"},
         Field{"warnings", &R::warnings, "",
               "what was noticed on the way: what a plugin left changed in its process or left "
               "running, what is doubtful about the terrain or the flight. The terrain's and the "

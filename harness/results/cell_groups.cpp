@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
+
+#include "results/health.h"
 
 namespace lodbench::results {
 
@@ -121,6 +125,7 @@ std::vector<std::string> noise_of(const CellGroup& group) {
         if (cell->noise.empty()) continue;
         texts.push_back(fmt::format("repetition {}: {}", cell->repetition, cell->noise));
     }
+    std::ranges::copy(health_words(group.good), std::back_inserter(texts));
     return texts;
 }
 

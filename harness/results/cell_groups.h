@@ -39,7 +39,8 @@ struct CellGroup {
 /// what did not.
 [[nodiscard]] std::vector<std::string> disagreements_of(const CellGroup& group);
 
-/// "repetition n: ..." of those whose times something else disturbed.
+/// "repetition n: ..." of those whose times something else disturbed: by the times themselves, and
+/// by what the sensors said.
 [[nodiscard]] std::vector<std::string> noise_of(const CellGroup& group);
 
 /// "true", "12", "0.5"

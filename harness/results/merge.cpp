@@ -15,6 +15,7 @@
 #include "base/child_process.h"
 #include "base/files.h"
 #include "base/interrupts.h"
+#include "results/alike.h"
 #include "results/folder.h"
 #include "results/json.h"
 #include "results/merge_files.h"
@@ -187,6 +188,28 @@ void add_once(Json::Value& list, const Json::Value& words) {
     if (std::find(list.begin(), list.end(), words) == list.end()) list.append(words);
 }
 
+/// What disturbed times on a device, one text for what its folders say with other numbers.
+Json::Value unite_noise(const std::vector<Json::Value>& contexts) {
+    std::map<std::string, std::vector<std::string>> devices;
+    for (const Json::Value& context : contexts) {
+        const Json::Value& gl = context["gl"];
+        std::string device =
+            fmt::format("{}, {} cores", value_text(context["cpu"]), value_text(context["cores"]));
+        if (gl.isObject()) device = fmt::format("{}; {}", value_text(gl["renderer"]), device);
+        std::vector<std::string>& texts = devices[device];
+        for (const Json::Value& words : context["noise"]) {
+            if (words.isString()) texts.push_back(words.asString());
+        }
+    }
+    Json::Value noise = Json::arrayValue;
+    for (const auto& [device, texts] : devices) {
+        for (const std::string& words : fold_alike(texts)) {
+            noise.append(devices.size() == 1 ? words : fmt::format("on {}: {}", device, words));
+        }
+    }
+    return noise;
+}
+
 /// What all have alike stands as in any run.json; what differs is null, and stands in "shards".
 Json::Value unite_runs(const std::vector<MergeInput>& inputs) {
     Json::Value run = inputs.front().run;
@@ -205,7 +228,7 @@ Json::Value unite_runs(const std::vector<MergeInput>& inputs) {
     }
     std::set<std::string> scenarios;
     for (const MergeInput& input : inputs) {
-        for (const char* key : {"warnings", "noise", "plugins"}) {
+        for (const char* key : {"warnings", "plugins"}) {
             for (const Json::Value& words : input.run[key]) add_once(run[key], words);
         }
         for (const Json::Value& scenario : input.run["scenarios"]) {
@@ -215,7 +238,9 @@ Json::Value unite_runs(const std::vector<MergeInput>& inputs) {
         }
     }
     run["shards"] = Json::arrayValue;
-    for (Json::Value& context : contexts_of(inputs)) run["shards"].append(std::move(context));
+    std::vector<Json::Value> contexts = contexts_of(inputs);
+    run["noise"] = unite_noise(contexts);
+    for (Json::Value& context : contexts) run["shards"].append(std::move(context));
     return run;
 }
 

@@ -8,14 +8,17 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "api/error.h"
 #include "base/files.h"
+#include "base/interrupts.h"
 #include "results/folder.h"
 #include "results/json.h"
 #include "results/run_folder.h"
 #include "run/context.h"
+#include "run/device_health.h"
 #include "run/exit_status.h"
 #include "run/supervisor.h"
 
@@ -83,11 +86,13 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
     run["command_line"] = request.command_line;
     run["seed"] = Json::UInt64(plan.seed);
     run["device_asked"] = request.device;
+    run["cool_down_s"] = request.cool_down_s.value_or(0);
     run["overrides"] = Json::objectValue;
     for (const auto& [key, value] : request.overrides.values()) {
         run["overrides"][key] = value.toml;
     }
     run["gl"] = Json::Value::null;
+    run["health"] = Json::Value::null;
     run["scenarios"] = Json::arrayValue;
     for (std::size_t i = 0; i < plan.scenarios.size(); ++i) {
         const scenario::Scenario& scenario = plan.scenarios[i];
@@ -159,6 +164,9 @@ void check_context(const Json::Value& run, const std::string& where) {
                                       [](const auto& warning) { return warning.isString(); }),
                           where, "warnings", "a list of texts");
     results::expect_field(run["seed"].isUInt64(), where, "seed", "a whole number");
+    const Json::Value& pause = run["cool_down_s"];
+    results::expect_field(pause.isNull() || (pause.isNumeric() && pause.asDouble() >= 0), where,
+                          "cool_down_s", "a number of at least 0");
 }
 
 /// A campaign under way.
@@ -183,8 +191,13 @@ public:
     CampaignOutcome fly() {
         try {
             discarding_what_is_refused([&] {
+                bool is_first = true;
                 for (std::size_t i = 0; i < plan_.cells.size(); ++i) {
-                    if (!finished_.contains(plan_.cells[i].spec.id)) fly_cell_at(i);
+                    if (finished_.contains(plan_.cells[i].spec.id)) continue;
+                    if (!std::exchange(is_first, false)) {
+                        cool_down(run_["cool_down_s"].asDouble(), observer_);
+                    }
+                    fly_cell_at(i);
                 }
             });
             write_summary();
@@ -303,6 +316,7 @@ private:
         try {
             check_context(run_, file.string());
             refuse_other_shard(file);
+            refuse_other_cool_down(file);
             refuse_other_build(file);
             folder_.make_parts();
             write_scenarios(run_["scenarios"]);  // a run killed early may not have come to it
@@ -338,6 +352,15 @@ private:
             "{}: the folder holds {}, and {} is asked for; give --resume and --out alone, or "
             "another --out",
             file.string(), words_of(began), words_of(request_.shard)));
+    }
+
+    void refuse_other_cool_down(const fs::path& file) const {
+        const double began = run_["cool_down_s"].asDouble();  // null, of an older version: 0
+        if (!request_.cool_down_s || *request_.cool_down_s == began) return;
+        throw InputError(fmt::format(
+            "{}: the run began with --cool-down {:g}, and {:g} is asked for; leave it out to "
+            "go on as it began, or begin anew with another --out",
+            file.string(), began, *request_.cool_down_s));
     }
 
     /// Cells of one run compare methods under one program.
@@ -426,10 +449,14 @@ private:
         const auto begin = std::chrono::steady_clock::now();
         const results::CellResult result =
             run_cell(cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
-                     [&](int done, int total) {
-                         observer_.cell_progress(cell, index, plan_.cells.size(),
-                                                 total > 0 ? double(done) / double(total) : 0.0);
+                     [&](const VitalSigns& signs) {
+                         health_.watch(signs);
+                         const int total = signs.frames_total.load();
+                         observer_.cell_progress(
+                             cell, index, plan_.cells.size(),
+                             total > 0 ? double(signs.frames_begun.load()) / total : 0.0);
                      });
+        const std::optional<results::HealthFigures> health = health_.finish();
         if (!result.environment_error.empty()) throw EnvironmentError(result.environment_error);
         if (!result.input_error.empty()) throw InputError(result.input_error);
         results::CellRecord record =
@@ -438,6 +465,7 @@ private:
                                  result, scenario.measure.budget_ms);
         record.cell_s =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        if (record.status == results::CellStatus::ok) record.health = health;
         refuse_changed_input(record);
         if (!result.gl_renderer.empty()) record.device = device_text(result, machine_context());
         if (!result.gl_renderer.empty()) refuse_other_renderer(gl_context(result));
@@ -449,6 +477,7 @@ private:
         outcome_.cells.push_back(record);
         if (run_["gl"].isNull() && !result.gl_renderer.empty()) {
             run_["gl"] = gl_context(result);
+            run_["health"] = health_.context();
             write_run();
         }
         note_noise();
@@ -513,6 +542,7 @@ private:
     Json::Value run_;
     std::set<std::string> finished_;
     bool noise_is_noted_ = false;
+    DeviceHealth health_;
     CampaignOutcome outcome_;
 };
 
@@ -528,6 +558,18 @@ int CampaignOutcome::exit_status() const {
     }
     if (!has(CellStatus::ok) && !nothing_to_fly) return kNothingMeasured;
     return error.empty() ? kAllWell : kCellFailed;
+}
+
+void cool_down(double seconds, CampaignObserver& observer) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    for (;;) {
+        if (base::interrupted()) throw Interrupted();
+        const std::chrono::duration<double> left = end - Clock::now();
+        if (left.count() <= 0) return;
+        observer.cooling_down(left.count());
+        std::this_thread::sleep_for(std::min(left, std::chrono::duration<double>(0.05)));
+    }
 }
 
 CampaignOutcome run_campaign(const RunRequest& request, const fs::path& program,

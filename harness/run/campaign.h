@@ -27,6 +27,8 @@ public:
     virtual void noisy(const std::string& /*words*/) {}
     virtual void cell_progress(const PlannedCell& /*cell*/, std::size_t /*index*/,
                                std::size_t /*count*/, double /*fraction*/) {}
+    /// Some times a second while it waits before a cell.
+    virtual void cooling_down(double /*left_s*/) {}
     virtual void cell_finished(const PlannedCell& /*cell*/, std::size_t /*index*/,
                                std::size_t /*count*/, const results::CellRecord& /*record*/) {}
     /// The text of summary.md, asked for at the end; `run` is the object of run.json.
@@ -47,6 +49,9 @@ struct CampaignOutcome {
     /// 0, 3 or 4, as docs/manual.md says.
     [[nodiscard]] int exit_status() const;
 };
+
+/// Waits, so that the machine cools down, and tells of it. Throws Interrupted.
+void cool_down(double seconds, CampaignObserver& observer);
 
 /// Plans, or with `resume` takes up, a campaign and flies what is missing. `program` is what a
 /// cell's child runs. Throws InputError or EnvironmentError before the first cell; after it,

@@ -55,8 +55,8 @@ std::optional<double> quota_of(const fs::path& group) {
 
 }  // namespace
 
-std::optional<double> cpu_quota(const fs::path& groups, const fs::path& mounts) {
-    std::optional<double> least;
+std::vector<fs::path> cpu_groups(const fs::path& groups, const fs::path& mounts) {
+    std::vector<fs::path> folders;
     std::ifstream stream(groups);
     for (std::string line; std::getline(stream, line);) {  // "NUMBER:CONTROLLERS:/GROUP"
         const std::size_t first = line.find(':');
@@ -68,10 +68,18 @@ std::optional<double> cpu_quota(const fs::path& groups, const fs::path& mounts) 
         // A group's parents bind it too. Inside a container its own folder may be the mount.
         fs::path group = fs::path(line.substr(second + 1)).relative_path();
         for (;; group = group.parent_path()) {
-            const std::optional<double> quota = quota_of(mount / group);
-            if (quota && (!least || *quota < *least)) least = quota;
+            folders.push_back(mount / group);
             if (group.empty()) break;
         }
+    }
+    return folders;
+}
+
+std::optional<double> cpu_quota(const fs::path& groups, const fs::path& mounts) {
+    std::optional<double> least;
+    for (const fs::path& group : cpu_groups(groups, mounts)) {
+        const std::optional<double> quota = quota_of(group);
+        if (quota && (!least || *quota < *least)) least = quota;
     }
     return least;
 }

@@ -22,6 +22,11 @@ namespace lodbench::run {
     const std::filesystem::path& groups = "/proc/self/cgroup",
     const std::filesystem::path& mounts = "/sys/fs/cgroup");
 
+/// The folders of the control groups that bind a process's CPU time: its own and their parents.
+/// `groups` and `mounts` are as for cpu_quota.
+[[nodiscard]] std::vector<std::filesystem::path> cpu_groups(const std::filesystem::path& groups,
+                                                            const std::filesystem::path& mounts);
+
 /// Processes that ran or waited to, mean of the last minute. Nothing where the system does not say.
 [[nodiscard]] std::optional<double> load_average();
 

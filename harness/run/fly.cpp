@@ -151,6 +151,7 @@ private:
     }
     void begin_replay(Replay replay) {
         replay_ = replay;
+        signs_.frames_of_replay = scenario_.frames;
         signs_.replay = replay;
     }
     [[nodiscard]] Camera camera_at(int frame) const { return track_->camera(frame); }
@@ -217,6 +218,8 @@ void Flight::open() {
     result_.gl_version = info.version;
     result_.software = info.software;
     result_.device_description = stage_->context().description();
+    signs_.gpu.write(stage_->context().gpu());
+    signs_.gpu_told = 1;
     if (const std::string& bound = stage_->method().claimed_bound; !bound.empty()) {
         result_.cell.claimed_px = stage_->params().real(bound);
     }

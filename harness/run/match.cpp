@@ -78,6 +78,8 @@ public:
         place_.probe = 0;
     }
     void next_probe() { ++place_.probe; }
+    /// By this command: a search that is taken up waits for no probe that was flown before.
+    [[nodiscard]] int flown() const { return flown_; }
     void begin_flight() { begun_ = Clock::now(); }
     /// At the end of a flight.
     [[nodiscard]] SearchPlace place() { return place_at(1); }
@@ -86,6 +88,7 @@ public:
         if (told_.insert(warning).second) observer_.warned(warning);
     }
     void noisy(const std::string& words) override { observer_.noisy(words); }
+    void cooling_down(double left_s) override { observer_.cooling_down(left_s); }
     void cell_progress(const PlannedCell&, std::size_t, std::size_t, double fraction) override {
         search_.flying(place_at(fraction));
     }
@@ -246,6 +249,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
             override_with(probe, "measure.whole", "false");
             // The error that is to be equal is the pixels'.
             override_with(probe, "measure.pixels_only", "true");
+            if (watch.flown() > 0) cool_down(request.cool_down_s.value_or(0), watch);
             watch.begin_flight();
             const CampaignOutcome flown = [&] {
                 try {
@@ -306,6 +310,7 @@ MatchOutcome match(const RunRequest& asked, const results::MatchTarget& target, 
     }
     write_record(request.out / "match.json", match_record(target, outcome.methods));
     folder.reset();  // the campaign locks it for itself
+    if (watch.flown() > 0) cool_down(request.cool_down_s.value_or(0), observer);
     outcome.campaign = run_campaign(final, program, observer);
     return outcome;
 }

@@ -29,6 +29,7 @@ struct RunRequest {
     std::string device;
     std::string command_line;
     std::optional<double> load_average;  ///< when the command began: before its own load
+    std::optional<double> cool_down_s;   ///< pause before each cell but the first; nothing: none
     std::optional<Shard> shard;          ///< the part of the campaign that is flown; nothing: all
     bool resume = false;
     /// Methods fly at the knob values that a scenario keeps ([equal]) where nothing else sets them.

@@ -183,7 +183,7 @@ int become_cell(const std::filesystem::path& program, int spec, int signs, int r
 
 results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
                              const std::filesystem::path& program,
-                             const std::filesystem::path& log_path, const CellProgress& progress) {
+                             const std::filesystem::path& log_path, const CellWatch& watch) {
     if (base::interrupted()) throw Interrupted();
     const base::FileDescriptor spec_file = base::memory_file("lodbench-spec");
     const base::FileDescriptor signs_file = base::memory_file("lodbench-signs");
@@ -266,9 +266,7 @@ results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
             return kill_for(results::CellStatus::timeout,
                             fmt::format("exceeded the cell's time limit of {} s", limits.cell_s));
         }
-        if (progress) {
-            progress(signs->frames_begun.load(), signs->frames_total.load());
-        }
+        if (watch) watch(*signs);
     }
     log.drain(reading.number());
 

@@ -17,8 +17,8 @@ struct CellLimits {
     std::uint64_t memory_bytes = 8ULL << 30;  ///< resident
 };
 
-/// Where a cell stands, for a line of progress.
-using CellProgress = std::function<void(int frames_done, int frames_total)>;
+/// Called some fifty times a second while a cell's process runs, with what it tells.
+using CellWatch = std::function<void(const VitalSigns& signs)>;
 
 /// base::interrupted() became true: the cell that ran was ended and left nothing.
 struct Interrupted : std::runtime_error {
@@ -31,7 +31,7 @@ struct Interrupted : std::runtime_error {
 [[nodiscard]] results::CellResult run_cell(const CellSpec& spec, const CellLimits& limits,
                                            const std::filesystem::path& program,
                                            const std::filesystem::path& log,
-                                           const CellProgress& progress);
+                                           const CellWatch& watch);
 
 /// The child's side: reads the specification from descriptor `spec`, flies it, writes the result to
 /// descriptor `result`; `signs` holds the shared VitalSigns. Exit status.

@@ -178,7 +178,8 @@ bool is_of_the_moment(const std::string& field) {
         "cell_s",          "fps",           "jank_ms",  "frame_ms",
         "select_ms",       "submit_ms",     "gpu_ms",   "cpu_ms",
         "prepare_s",       "prepare_cpu_s", "upload_s", "peak_rss_bytes",
-        "frames_checksum", "timer_verdict", "seed",     "depth_hash"};
+        "frames_checksum", "timer_verdict", "seed",     "depth_hash",
+        "health"};
     return kFields.contains(field);
 }
 

@@ -80,9 +80,13 @@ AccountingStorageType=accounting_storage/none
 MpiDefault=none
 ReturnToService=0
 KillWait=5
-NodeName={self.node} NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000 State=UNKNOWN
+GresTypes=gpu
+NodeName={self.node} NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000 Gres=gpu:2 State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 """)
+        # Devices that every machine has, to be counted and bound, and not drawn on.
+        (folder / "gres.conf").write_text("".join(f"NodeName={self.node} Name=gpu File=/dev/{file}\n"
+                                                  for file in ["null", "zero"]))
         self.environment = dict(os.environ, SLURM_CONF=str(folder / "slurm.conf"),
                                 PATH=os.environ["PATH"] + ":/usr/sbin")
 
@@ -235,6 +239,35 @@ class Campaign(unittest.TestCase):
         self.assertTrue(cells.read_text().startswith(kept), "what was flown is not flown again")
         self.assertEqual(len(cells_of(out / "merged")), 12)
         self.assertEqual(slurm.call(SLURM / "unfinished", out).stdout, "")
+
+    def seen_by_tasks(self, name, *options):
+        """Submits two tasks of a program that notes its GPUs and when it ran: [(GPUs, begin, end)]."""
+        program = folder / "notes"
+        program.write_text("""#!/usr/bin/env bash
+[[ $1 == run ]] || exit 0
+for ((i = 1; i < $#; ++i)); do [[ ${!i} != --out ]] || { next=$((i + 1)); out=${!next}; }; done
+begin=$(date +%s.%N); sleep 4
+echo "${CUDA_VISIBLE_DEVICES-none} $begin $(date +%s.%N)" >"$out.seen"
+""")
+        program.chmod(0o755)
+        out = folder / name
+        slurm.call(SLURM / "submit", "--shards", "2", "--out", out, "--lodbench", program, *options, "--", "run")
+        wait_for(lambda: not slurm.jobs("pending,running,completing"), "both tasks", 120)
+        lines = [(out / "shards" / f"{n}.seen").read_text().split() for n in [1, 2]]
+        return [(gpus, float(begin), float(end)) for gpus, begin, end in lines]
+
+    def test_gpu_binds_each_task_to_one_of_its_own(self):
+        (first, begin, end), (second, later_begin, later_end) = self.seen_by_tasks("gpu", "--gpu")
+        self.assertEqual({first, second}, {"0", "1"})
+        self.assertLess(max(begin, later_begin), min(end, later_end), "they ran side by side")
+        (first, *_), (second, *_) = self.seen_by_tasks("without")
+        self.assertEqual((first, second), ("none", "none"))
+
+    def test_exclusive_gives_each_task_the_node_alone(self):
+        (_, begin, end), (_, later_begin, later_end) = sorted(self.seen_by_tasks("alone", "--exclusive"),
+                                                              key=lambda task: task[1])
+        self.assertLess(end, later_begin, "one after the other, though the node has two cores")
+        self.assertLess(later_begin, later_end)
 
     def test_what_cannot_be_submitted_is_refused(self):
         for words, remedy in [

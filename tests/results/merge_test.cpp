@@ -223,6 +223,31 @@ TEST_F(TwoShards, of_unlike_protocol_are_refused_by_field_and_both_values) {
     EXPECT_EQ(refused(), "") << "and what was spoiled alone was refused";
 }
 
+TEST_F(TwoShards, that_were_disturbed_alike_share_a_line_for_each_device_with_the_range) {
+    const auto write_noise = [](const fs::path& folder, const char* load) {
+        Json::Value run = parse_json(text_of(folder / "run.json"), "run.json");
+        run["noise"].append(fmt::format("the load average was {} on 8 cores", load));
+        FakeCampaign::put(folder / "run.json", to_text(run));
+    };
+    write_noise(a, "9.50");
+    write_noise(b, "17.25");
+    const Json::Value noise = merge({a, b}, out).run["noise"];
+    ASSERT_EQ(noise.size(), 1U) << noise;
+    EXPECT_EQ(noise[0], "the load average was 9.50 to 17.25 on 8 cores");
+    FakeCampaign other = campaign;
+    other.device = "renderer B, OpenGL 4.6; processor, 8 cores";
+    const fs::path c = scratch.path() / "c";
+    other.write(c, other.cells(5), other.cells(5), 1, 1);
+    write_noise(c, "12.00");
+    const Json::Value both = merge({a, b, c}, scratch.path() / "both").run["noise"];
+    ASSERT_EQ(both.size(), 2U) << both;
+    EXPECT_EQ(both[0],
+              "on renderer A; processor, 8 cores: the load average was 9.50 to 17.25 on 8 cores");
+    EXPECT_EQ(both[1], "on renderer B; processor, 8 cores: the load average was 12.00 on 8 cores");
+    EXPECT_EQ(merge({out, c}, scratch.path() / "again").run["noise"], both)
+        << "merged in two steps";
+}
+
 TEST_F(TwoShards, over_another_terrain_or_with_another_plugin_are_refused) {
     spoil_cell([](CellRecord& cell) { cell.terrain_checksum = "00000000000000ff"; });
     EXPECT_THAT(refused(), AllOf(HasSubstr("a/cells.jsonl:1 and"), HasSubstr("b/cells.jsonl:1"),

@@ -10,6 +10,7 @@
 #include "report/html/sections.h"
 #include "report/html/text.h"
 #include "results/deterministic.h"
+#include "results/health.h"
 #include "results/json.h"
 
 namespace lodbench::report::html {
@@ -46,6 +47,10 @@ std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
                                                         names.front(), names.size() - 1));
     }
     for (const results::CellGroup& group : results::group_cells(folder.cells)) {
+        for (const std::string& text : results::health_words(group.good)) {
+            texts.push_back(
+                fmt::format("noise: {}, {}: {}", group.label, group.comparison(), text));
+        }
         for (const std::string& text : results::disagreements_of(group)) {
             texts.push_back(fmt::format("{}, {}: {}", group.label, group.comparison(), text));
         }
@@ -88,6 +93,12 @@ std::string machine_html(const results::ResultFolder& folder) {
     html += definition("Cores", run["cores"]);
     html += definition("OpenGL", results::member_of(gl, "version"));
     html += definition("Device", results::member_of(gl, "device"));
+    const Json::Value& health = run["health"];
+    const Json::Value& gpu = results::member_of(health, "gpu");
+    html += definition("GPU's sensors", gpu.isObject() ? results::member_of(gpu, "source")
+                                                       : results::member_of(health, "gpu_absent"));
+    html += definition("CPU governor", results::member_of(health, "cpu_governor"));
+    html += definition("Cool-down, s", run["cool_down_s"]);
     html += definition("Build", run["build_type"]);
     html += definition("Compiler", run["compiler"]);
     return html + "</dl>\n";
