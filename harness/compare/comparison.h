@@ -20,8 +20,9 @@ struct Rules {
     /// The least change of a time that matters, a share: "within noise" says that the true change
     /// is below it (95 % confidence).
     double matters = 0.05;
-    /// The chance that a comparison of equal runs calls any of its times slower or faster.
-    double alpha = 0.01;
+    /// The chance that a comparison of equal runs calls any of its times slower or faster: half of
+    /// the 1 % that is promised, for repetitions are not quite independent.
+    double alpha = 0.005;
     /// Runs of one build, from which the effect floor is measured; none: from the repetitions'
     /// spread.
     std::vector<results::ResultFolder> noise;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include "report/aligned_table.h"
@@ -47,9 +49,19 @@ std::vector<std::string> remarks(const Comparison& comparison) {
         lines.push_back(setting + ": new, so compared with nothing");
     }
     for (const std::string& note : comparison.notes) lines.push_back(note);
+    // What many settings have in common is said once.
+    std::vector<std::pair<std::string, std::vector<std::string>>> notes;  // and whose
     for (const SettingComparison& setting : comparison.settings) {
-        for (const std::string& note : setting.notes)
-            lines.push_back(name_of(setting) + ": " + note);
+        for (const std::string& note : setting.notes) {
+            auto known = std::ranges::find(notes, note, [](const auto& one) { return one.first; });
+            if (known == notes.end()) known = notes.insert(known, {note, {}});
+            known->second.push_back(name_of(setting));
+        }
+    }
+    for (const auto& [note, whose] : notes) {
+        lines.push_back(whose.size() == 1 ? fmt::format("{}: {}", whose.front(), note)
+                                          : fmt::format("{} settings, {} and others: {}",
+                                                        whose.size(), whose.front(), note));
     }
     return lines;
 }
