@@ -57,3 +57,14 @@ configure() {
     [[ $("${CXX:-c++}" -dumpversion 2>/dev/null) != 12 ]] || flags=(-DLODBENCH_WERROR=ON)
     (cd "$root" && cmake --preset "$preset" --log-level=WARNING "${flags[@]}" "$@")
 }
+
+# fly_baseline OUT: the flight of results/baseline, by software whatever GPU there is.
+fly_baseline() {
+    "$root/build/release/bin/lodbench" run "$root/scenarios/baseline.toml" --device software --out "$1"
+}
+
+# A new folder for a flight that scripts keep, and say where it is.
+new_results_folder() {
+    mkdir -p "$root/lodbench-results"
+    mktemp --directory "$root/lodbench-results/$1-$(date --utc +%Y-%m-%dT%H-%M-%SZ)-XXXX"
+}

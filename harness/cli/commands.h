@@ -18,6 +18,8 @@ void add_economy(CLI::App& app, int& status);
 void add_cell(CLI::App& app, int& status);  ///< hidden: the child process of `run`
 void add_plan(CLI::App& app, int& status);
 void add_merge(CLI::App& app, int& status);
+void add_compare(CLI::App& app, int& status);
+void add_baseline(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
 void add_terrain(CLI::App& app, int& status);

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "report/html/figure.h"
 #include "report/html/report.h"
+#include "report/junit.h"
 
 namespace lodbench::cli {
 
@@ -24,6 +25,7 @@ struct ReportOptions {
     std::vector<fs::path> folders;
     fs::path out;
     fs::path csv;
+    fs::path junit;
     std::string figure;
 };
 
@@ -80,9 +82,19 @@ void write_figure(const ReportOptions& options) {
     base::print("figure    {}\n", fs::absolute(out).lexically_normal().string());
 }
 
+void write_junit(const ReportOptions& options, const std::vector<results::ResultFolder>& folders) {
+    if (folders.size() != 1) {
+        throw InputError(fmt::format("--junit {}: it is of one results folder, and {} are named",
+                                     options.junit.string(), folders.size()));
+    }
+    base::write_whole(options.junit, report::junit_of(folders.front()));
+}
+
 void write(const ReportOptions& options) {
     if (!options.figure.empty()) return write_figure(options);
-    const report::html::Report page = report::html::make_report(read_folders(options.folders));
+    const std::vector<results::ResultFolder> folders = read_folders(options.folders);
+    if (!options.junit.empty()) write_junit(options, folders);
+    const report::html::Report page = report::html::make_report(folders);
     const fs::path out =
         options.out.empty() ? options.folders.front() / "report.html" : options.out;
     if (!options.csv.empty()) write_csv(options.csv, page.csv);
@@ -106,11 +118,14 @@ void add_report(CLI::App& app, int& /*status*/) {
     command->add_option("--out,-o", options->out,
                         "the page, or the figure; default report.html in the first folder");
     auto* csv = command->add_option("--csv", options->csv, "folder to write every table to as CSV");
+    auto* junit = command->add_option(
+        "--junit", options->junit,
+        "file to write JUnit XML to as well: a case for each cell of the one folder");
     auto* figure = command->add_option(
         "--figure", options->figure,
         "one plot alone as an SVG, for a paper: its id on the page, as trade-time; "
         "an unknown name lists them; --out names the file, default NAME.svg");
-    figure->excludes(csv);
+    figure->excludes(csv)->excludes(junit);
     command->callback([options] { write(*options); });
 }
 

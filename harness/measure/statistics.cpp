@@ -74,6 +74,24 @@ double median_in_place(std::span<double> values) {
     return below == *middle ? below : below + (*middle - below) / 2;
 }
 
+/// Mean of the slowest n / `part` frames; nothing where that is less than one. `ordered` rises.
+std::optional<double> mean_of_slowest(std::span<const double> ordered, std::size_t part) {
+    const std::size_t slowest = ordered.size() / part;
+    if (slowest == 0) return std::nullopt;
+    return mean_of(ordered.last(slowest));
+}
+
+/// Mean of the fewest slowest frames that make `share` of the time. `ordered` rises.
+double mean_of_slowest_time(std::span<const double> ordered, double share) {
+    const double wanted = share * std::accumulate(ordered.begin(), ordered.end(), 0.0);
+    double sum = 0;
+    std::size_t frames = 0;
+    do {
+        sum += ordered[ordered.size() - ++frames];
+    } while (sum < wanted && frames < ordered.size());
+    return sum / double(frames);
+}
+
 }  // namespace
 
 std::optional<double> percentile(std::span<const double> values, double p) {
@@ -119,9 +137,9 @@ TimeSummary summarize_times(std::span<const double> milliseconds) {
     summary.p999 = supported_percentile(ordered, 0.999);
     summary.min = ordered.front();
     summary.max = ordered.back();
-    if (const std::size_t slowest = ordered.size() / 100; slowest > 0) {
-        summary.low1 = mean_of(std::span<const double>(ordered).last(slowest));
-    }
+    summary.low1 = mean_of_slowest(ordered, 100);
+    summary.low01 = mean_of_slowest(ordered, 1000);
+    if (ordered.size() >= 100) summary.low1_time = mean_of_slowest_time(ordered, 0.01);
     return summary;
 }
 

@@ -25,7 +25,11 @@ namespace lodbench::measure {
 /// Mean, median, min and max need one frame; the percentiles their support.
 struct TimeSummary {
     std::optional<double> mean, median, p90, p95, p99, p999, min, max;
-    std::optional<double> low1;  ///< mean of the slowest floor(n / 100) frames; needs 100 frames
+    std::optional<double> low1;   ///< mean of the slowest floor(n / 100) frames; needs 100 frames
+    std::optional<double> low01;  ///< of the slowest floor(n / 1000); needs 1000 frames
+    /// Mean of the fewest slowest frames that together make 1 % of the time or more; needs 100
+    /// frames. Unlike low1 it weighs a stall by how long it lasted.
+    std::optional<double> low1_time;
 };
 /// Times are finite and not negative.
 [[nodiscard]] TimeSummary summarize_times(std::span<const double> milliseconds);

@@ -96,7 +96,10 @@ void decode(const Json::Value& json, CellStatus& status, const Place& place) {
 void forget_measured(CellResult& result) {
     result.frames.clear();
     CellRecord& cell = result.cell;
-    for (auto* seconds : {&cell.prepare_s, &cell.prepare_cpu_s, &cell.upload_s}) seconds->reset();
+    for (auto* time :
+         {&cell.prepare_s, &cell.prepare_cpu_s, &cell.upload_s, &cell.first_frame_ms}) {
+        time->reset();
+    }
     for (auto* count : {&cell.samples_served, &cell.samples_prepared, &cell.tiles_served,
                         &cell.terrain_bytes_read}) {
         count->reset();

@@ -130,12 +130,13 @@ struct CellRecord : CellName {
     std::optional<std::vector<EconomyFrame>> economy;
 
     // What it took, and what it asked of the terrain until the timing replay ended.
-    std::optional<double> prepare_s, prepare_cpu_s, upload_s;
+    std::optional<double> prepare_s, prepare_cpu_s, upload_s, first_frame_ms;
     std::optional<std::uint64_t> samples_served, samples_prepared, tiles_served, terrain_bytes_read;
     std::optional<std::uint64_t> gpu_bytes, peak_rss_bytes;
     Counters counters;
     std::optional<double> claimed_px;
     std::optional<double> cell_s;
+    std::string began;
 
     // Under which conditions.
     std::string depth_hash, shots_hash;

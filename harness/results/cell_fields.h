@@ -25,7 +25,12 @@ struct FieldTable<measure::TimeSummary> {
         Field{"p999", &R::p999, "ms", "from 10,000 frames on"},
         Field{"min", &R::min, "ms", "the fastest frame"},
         Field{"max", &R::max, "ms", "the slowest frame"},
-        Field{"low1", &R::low1, "ms", "mean of the slowest 1 %; from 100 frames on"}};
+        Field{"low1", &R::low1, "ms", "1 % low: mean of the slowest 1 %; from 100 frames on"},
+        Field{"low1_time", &R::low1_time, "ms",
+              "1 % low by time: mean of the fewest slowest frames that together make 1 % of the "
+              "time; from 100 frames on"},
+        Field{"low01", &R::low01, "ms",
+              "0.1 % low: mean of the slowest 0.1 %; from 1,000 frames on"}};
 };
 
 template <>
@@ -267,6 +272,9 @@ struct FieldTable<CellRecord> {
         Field{"prepare_s", &R::prepare_s, "s", "preprocessing, wall time"},
         Field{"prepare_cpu_s", &R::prepare_cpu_s, "s", "preprocessing, CPU time of all threads"},
         Field{"upload_s", &R::upload_s, "s", "start-up: GPU objects made"},
+        Field{"first_frame_ms", &R::first_frame_ms, "ms",
+              "wall time of the first frame that the method ever draws, after `upload_s` and until "
+              "the GPU is done: of the warm-up where there is one, which is in no `frame_ms`"},
         Field{"samples_served", &R::samples_served, "",
               "height samples that the method asked for until its timing replay ended"},
         Field{"samples_prepared", &R::samples_prepared, "",
@@ -286,6 +294,9 @@ struct FieldTable<CellRecord> {
         Field{"cell_s", &R::cell_s, "s",
               "the whole cell, wall time: its process, the terrain, preprocessing, all replays and "
               "the truth. What `lodbench plan --from` expects times by"},
+        Field{"began", &R::began, "",
+              "when its process was started, UTC, to the millisecond: which of two runs' cells "
+              "were flown in turn"},
 
         Field{"depth_hash", &R::depth_hash, "",
               "of the depth image at one frame, equal between replays"},

@@ -49,26 +49,34 @@ constexpr std::array kDeterministic = {
     DeterministicField{"terrain_checksum", Elsewhere::exactly},
 };
 
+constexpr std::array kColumns = {
+    DeterministicField{"triangles", Elsewhere::exactly},
+    DeterministicField{"triangles_nondegenerate", Elsewhere::exactly},
+    DeterministicField{"draw_calls", Elsewhere::exactly},
+    DeterministicField{"uploaded_bytes", Elsewhere::exactly},
+    DeterministicField{"uncovered_samples", Elsewhere::exactly},
+    DeterministicField{"crack_pixels", Elsewhere::exactly},
+    DeterministicField{"skirt_pixels", Elsewhere::exactly},
+    DeterministicField{"silhouette_pixels", Elsewhere::exactly},
+    DeterministicField{"screen_max_px", Elsewhere::rounded},
+    DeterministicField{"screen_p999_px", Elsewhere::rounded},
+    DeterministicField{"screen_rms_px", Elsewhere::rounded},
+    DeterministicField{"visible_max_px", Elsewhere::rounded},
+    DeterministicField{"visible_p999_px", Elsewhere::rounded},
+    DeterministicField{"pixel_max_px", Elsewhere::rounded},
+    DeterministicField{"pixel_p999_px", Elsewhere::rounded},
+    DeterministicField{"pixel_rms_px", Elsewhere::rounded},
+    DeterministicField{"silhouette_max_px", Elsewhere::rounded},
+    DeterministicField{"popping_max_px", Elsewhere::rounded},
+    DeterministicField{"popping_p999_px", Elsewhere::rounded},
+    DeterministicField{"height_rmse_m", Elsewhere::rounded},
+    DeterministicField{"psnr_db", Elsewhere::rounded},
+    DeterministicField{"ssim", Elsewhere::rounded},
+};
+
 bool within_rounding(double a, double b) {
     const double unit = std::max({std::abs(a), std::abs(b), 1.0});
     return a == b || std::abs(a - b) <= kDeviceRounding * unit;
-}
-
-/// Whether two figures agree. Where the greatest error is may jump between two places that are
-/// equally wrong, which is no difference.
-bool agree(const Json::Value& a, const Json::Value& b, Elsewhere elsewhere) {
-    if (elsewhere == Elsewhere::exactly || a.type() == Json::nullValue) return a == b;
-    if (a.isNumeric() && b.isNumeric()) return within_rounding(a.asDouble(), b.asDouble());
-    if (a.type() != b.type() || a.size() != b.size()) return false;
-    if (a.isArray()) {
-        return std::equal(a.begin(), a.end(), b.begin(), [&](const auto& left, const auto& right) {
-            return agree(left, right, elsewhere);
-        });
-    }
-    if (!a.isObject()) return a == b;
-    return std::ranges::all_of(a.getMemberNames(), [&](const std::string& name) {
-        return name == "worst" || agree(a[name], b[name], elsewhere);
-    });
 }
 
 /// Of one setting on each device, the figures that one of its cells has.
@@ -83,6 +91,25 @@ struct Difference {
 
 std::span<const DeterministicField> deterministic_fields() {
     return kDeterministic;
+}
+
+std::span<const DeterministicField> deterministic_columns() {
+    return kColumns;
+}
+
+bool agree(const Json::Value& a, const Json::Value& b, Elsewhere elsewhere, bool one_device) {
+    if (one_device || elsewhere == Elsewhere::exactly || a.type() == Json::nullValue) return a == b;
+    if (a.isNumeric() && b.isNumeric()) return within_rounding(a.asDouble(), b.asDouble());
+    if (a.type() != b.type() || a.size() != b.size()) return false;
+    if (a.isArray()) {
+        return std::equal(a.begin(), a.end(), b.begin(), [&](const auto& left, const auto& right) {
+            return agree(left, right, elsewhere, one_device);
+        });
+    }
+    if (!a.isObject()) return a == b;
+    return std::ranges::all_of(a.getMemberNames(), [&](const std::string& name) {
+        return name == "worst" || agree(a[name], b[name], elsewhere, one_device);
+    });
 }
 
 std::vector<std::string> deterministic_differences(const CellRecord& a, const CellRecord& b) {
@@ -116,7 +143,7 @@ std::vector<std::string> device_differences(const std::vector<CellRecord>& cells
                 const Json::Value& a = first[field.name];
                 const Json::Value& b = other[field.name];
                 if (field.elsewhere == Elsewhere::never || a.isNull() || b.isNull() ||
-                    agree(a, b, field.elsewhere)) {
+                    agree(a, b, field.elsewhere, false)) {
                     continue;
                 }
                 Difference& difference = differences[{first_device, device, field.name}];

@@ -1,6 +1,8 @@
 #pragma once
 // Which figures of a cell do not depend on when it was flown, and what of them devices differ in.
 
+#include <json/value.h>
+
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +29,15 @@ inline constexpr double kDeviceRounding = 1e-3;
 /// This is the one list of them. Not in it are times, memory, what an asynchronous method did at
 /// its own pace, and its own counters.
 [[nodiscard]] std::span<const DeterministicField> deterministic_fields();
+
+/// The same of the columns of a cell's frames (results/frame.h).
+[[nodiscard]] std::span<const DeterministicField> deterministic_columns();
+
+/// Whether two figures, as JSON, agree: to the bit on one device, else as far as `elsewhere` says.
+/// Where the greatest error is may jump between two places that are equally wrong, which is no
+/// difference between devices.
+[[nodiscard]] bool agree(const Json::Value& a, const Json::Value& b,
+                         DeterministicField::Elsewhere elsewhere, bool one_device);
 
 /// The names of the deterministic fields in which two records differ, to the bit.
 [[nodiscard]] std::vector<std::string> deterministic_differences(const CellRecord& a,

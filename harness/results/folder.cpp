@@ -212,7 +212,12 @@ const std::vector<double>* FrameTable::find(std::string_view column) const {
     return found == columns.end() ? nullptr : &found->second;
 }
 
-FrameTable parse_frame_table(std::string_view csv, const std::string& where) {
+FramesWanted frames_of_report() {
+    return {.columns = kKeptColumns};
+}
+
+FrameTable parse_frame_table(std::string_view csv, const std::string& where,
+                             const FramesWanted& wanted) {
     FrameTable table;
     std::vector<std::string_view> names;
     std::vector<std::string_view> fields;
@@ -228,7 +233,7 @@ FrameTable parse_frame_table(std::string_view csv, const std::string& where) {
         if (names.empty()) {
             names = fields;
             for (const std::string_view name : names) {
-                const bool kept = std::ranges::find(kKeptColumns, name) != kKeptColumns.end();
+                const bool kept = std::ranges::find(wanted.columns, name) != wanted.columns.end();
                 columns.push_back(kept ? &table.columns[std::string(name)] : nullptr);
             }
             continue;
@@ -244,7 +249,8 @@ FrameTable parse_frame_table(std::string_view csv, const std::string& where) {
         ++table.rows;
     }
     for (const std::string_view name : {"frame", "wall_ms"}) {
-        if (!table.columns.contains(name)) {
+        if (std::ranges::find(wanted.columns, name) != wanted.columns.end() &&
+            !table.columns.contains(name)) {
             throw InputError(
                 fmt::format("{}:1: there is no column '{}'; {}", where, name, kCopyAgain));
         }
@@ -264,7 +270,7 @@ void expect_frames(const CellRecord& cell, std::string_view csv, const std::stri
                                  found, written, kCopyAgain));
 }
 
-ResultFolder read_result_folder(const fs::path& path) {
+ResultFolder read_result_folder(const fs::path& path, const FramesWanted& wanted) {
     ResultFolder folder;
     folder.path = path;
     folder.name = fs::absolute(path).lexically_normal().filename().string();
@@ -276,10 +282,11 @@ ResultFolder read_result_folder(const fs::path& path) {
     for (const CellRecord& cell : folder.cells) {
         if (cell.status != CellStatus::ok) continue;
         const fs::path file = path / "frames" / (cell.cell + ".csv");
+        if (!wanted.required && !fs::exists(file)) continue;
         const std::string csv =
             read_input(file, "cells.jsonl names its cell: copy the folder again, with its frames");
         expect_frames(cell, csv, file.string());
-        folder.frames.emplace(cell.cell, parse_frame_table(csv, file.string()));
+        folder.frames.emplace(cell.cell, parse_frame_table(csv, file.string(), wanted));
     }
     read_flights(folder);
     read_search(folder);

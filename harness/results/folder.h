@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,7 @@
 
 namespace lodbench::results {
 
-/// frames/<cell>.csv. Of its columns only those that a report draws are kept.
+/// frames/<cell>.csv. Of its columns only those that are wanted are kept.
 struct FrameTable {
     std::map<std::string, std::vector<double>, std::less<>> columns;  ///< NaN: absent
     std::size_t rows = 0;
@@ -44,6 +45,14 @@ struct FlightRecord {
     std::filesystem::path hillshade;     ///< PNG; empty where there is none
 };
 
+/// What is read of frames/.
+struct FramesWanted {
+    std::span<const std::string_view> columns;
+    bool required = true;  ///< false: a cell without the file has no table
+};
+/// What a report draws, and all cells must have.
+[[nodiscard]] FramesWanted frames_of_report();
+
 struct ResultFolder {
     std::filesystem::path path;
     std::string name;  ///< the folder's own name
@@ -61,14 +70,16 @@ struct ResultFolder {
 /// Reads and checks all of it. Throws InputError with file, line and remedy where something in it
 /// is missing, damaged, or of another schema version; results that were not measured, pictures and
 /// flights may be missing.
-[[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& path);
+[[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& path,
+                                              const FramesWanted& wanted = frames_of_report());
 
 /// Throws InputError unless nothing or a plain file lies there: a link leads out of the folder, and
 /// reading a pipe never ends.
 void expect_plain_file(const std::filesystem::path& file);
 
 /// `where` names the file in messages.
-[[nodiscard]] FrameTable parse_frame_table(std::string_view csv, const std::string& where);
+[[nodiscard]] FrameTable parse_frame_table(std::string_view csv, const std::string& where,
+                                           const FramesWanted& wanted = frames_of_report());
 
 /// Throws InputError naming the file unless a cell's frames are those that it was written with.
 void expect_frames(const CellRecord& cell, std::string_view csv, const std::string& where);

@@ -446,6 +446,7 @@ private:
             limits.cell_s = limits.frame_s = std::numeric_limits<double>::infinity();
             warn_once("flown under a debugger (--wait-for-debugger): times mean nothing");
         }
+        const std::string began = utc_now_ms();
         const auto begin = std::chrono::steady_clock::now();
         const results::CellResult result =
             run_cell(cell.spec, limits, program_, folder_.path() / "logs" / (cell.spec.id + ".log"),
@@ -463,6 +464,7 @@ private:
             results::finish_cell({cell.spec.id, cell.scenario, cell.spec.method, cell.params,
                                   cell.spec.repetition, cell.spec.seed},
                                  result, scenario.measure.budget_ms);
+        record.began = began;
         record.cell_s =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         if (record.status == results::CellStatus::ok) record.health = health;

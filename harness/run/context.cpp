@@ -2,10 +2,12 @@
 
 #include "run/commit.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/utsname.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -112,11 +114,14 @@ std::vector<std::string> noise_of(const Json::Value& machine) {
 }
 
 std::string utc_now() {
-    const std::time_t now = std::time(nullptr);
-    std::tm time{};
-    gmtime_r(&now, &time);
-    char text[32];
-    return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &time)};
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+std::string utc_now_ms() {
+    using namespace std::chrono;
+    const auto now = floor<milliseconds>(system_clock::now());
+    return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(floor<seconds>(now)),
+                       now.time_since_epoch().count() % 1000);
 }
 
 Json::Value machine_context() {

@@ -36,6 +36,8 @@ namespace lodbench::run {
 
 /// Date and time in UTC: "2025-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_now();
+/// "2025-01-31T12:34:56.789Z"
+[[nodiscard]] std::string utc_now_ms();
 
 /// What flew a cell, in words: "llvmpipe (...), OpenGL 4.5 ...; AMD EPYC, 2 cores". `machine` is
 /// its `machine_context`.

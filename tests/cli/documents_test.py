@@ -135,7 +135,7 @@ class Documents(unittest.TestCase):
         self.assertEqual([p for p in PAGES if p.name != "README.md" and p not in linked], [], "pages that none names")
 
     def test_scripts_have_help(self):
-        for script in ["demo", "test", "check-clean"]:
+        for script in ["demo", "test", "check-clean", "update-baseline", "compare-commits"]:
             done = subprocess.run([SOURCE / "scripts" / script, "--help"], capture_output=True,
                                   text=True, timeout=60, cwd="/")
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -84,7 +84,7 @@ def png(width, height):
 
 def summary(value):
     return {"mean": value, "median": value * 0.99, "p90": value * 1.5, "p95": None, "p99": None,
-            "p999": None, "min": value / 2, "max": value * 3, "low1": None}
+            "p999": None, "min": value / 2, "max": value * 3, "low1": None, "low1_time": None, "low01": None}
 
 
 def cell(name, method="lindstrom", scenario="demo", repetition=0, params=None, time=10.1, error=0.3, **more):

@@ -19,8 +19,9 @@ MAY_INCLUDE = {
     "scenario": {"api", "base", "terrain"},
     "measure": {"api", "base", "gl"},
     "results": {"api", "base", "measure"},
+    "compare": {"api", "base", "measure", "results"},
     "picture": {"api", "base", "measure"},
-    "report": {"api", "base", "measure", "results", "picture"},
+    "report": {"api", "base", "measure", "results", "compare", "picture"},
     "run": {"api", "base", "common", "gl", "platform", "terrain", "scenario", "measure", "results", "picture"},
     "conformance": {"api", "base", "common", "gl", "measure", "results", "run"},
 }

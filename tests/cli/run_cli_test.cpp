@@ -185,7 +185,7 @@ TEST_F(Run, cells_have_every_field_and_null_where_nothing_was_measured) {
                 continue;  // no timer to believe
             EXPECT_TRUE(cell[time]["mean"].isNumeric()) << time;
             EXPECT_TRUE(cell[time]["median"].isNumeric()) << time;
-            for (const char* part : {"p90", "p95", "p99", "p999", "low1"}) {
+            for (const char* part : {"p90", "p95", "p99", "p999", "low1", "low1_time", "low01"}) {
                 EXPECT_TRUE(cell[time].isMember(part)) << time << part;
                 EXPECT_TRUE(cell[time][part].isNull()) << "8 frames do not support " << part;
             }

@@ -96,7 +96,7 @@ constexpr const char* kRun = R"({"schema_version":1,"tool_version":"1","commit":
 
 std::string cell(const char* id, const char* method, const char* tau) {
     const std::string summary = R"({"mean":3.5,"median":3,"p90":4,"p95":4,"p99":null,"p999":null,)"
-                                R"("min":2,"max":5,"low1":null})";
+                                R"("min":2,"max":5,"low1":null,"low1_time":null,"low01":null})";
     const std::string errors =
         R"({"count":9,"uncovered":0,"max":"inf","p999":0.5,"p99":0.4,"max_covered":2,"rms":0.1,)"
         R"("mean":0.1,"over_tau":0,"worst":{"frame":1,"row":2,"column":3}})";

@@ -96,7 +96,8 @@ TEST(Median, is_the_middle_or_the_mean_of_the_two_middle_values) {
 TEST(TimeSummary, of_no_frames_is_all_absent) {
     const TimeSummary summary = summarize_times({});
     EXPECT_FALSE(summary.mean || summary.median || summary.p90 || summary.p95 || summary.p99 ||
-                 summary.p999 || summary.min || summary.max || summary.low1);
+                 summary.p999 || summary.min || summary.max || summary.low1 || summary.low01 ||
+                 summary.low1_time);
 }
 
 TEST(TimeSummary, of_one_frame_has_no_percentiles) {
@@ -119,6 +120,25 @@ TEST(TimeSummary, of_a_thousand_known_frames_is_exact) {
     EXPECT_EQ(summary.min, 1);
     EXPECT_EQ(summary.max, 1000);
     EXPECT_EQ(summary.low1, 995.5);  // mean of 991 ... 1000
+    EXPECT_EQ(summary.low01, 1000);
+    // 1 % of 500,500 is 5005: 1000 + 999 + ... + 996 = 4990 is short of it, 995 more is not.
+    EXPECT_EQ(summary.low1_time, 997.5);
+}
+
+TEST(TimeSummary, low1_by_time_weighs_a_stall_by_its_length) {
+    std::vector<double> frames(1000, 10.0);
+    frames[500] = 2000;  // alone a sixth of the time
+    const TimeSummary summary = summarize_times(frames);
+    EXPECT_EQ(summary.low1_time, 2000);
+    EXPECT_EQ(summary.low1, (2000 + 9 * 10.0) / 10);
+    EXPECT_EQ(summarize_times(std::vector<double>(100, 0.0)).low1_time, 0) << "no time at all";
+}
+
+TEST(TimeSummary, low01_needs_a_thousand_frames_and_low1_by_time_a_hundred) {
+    EXPECT_FALSE(summarize_times(shuffled_ranks(999)).low01.has_value());
+    EXPECT_EQ(summarize_times(shuffled_ranks(1999)).low01, 1999);
+    EXPECT_FALSE(summarize_times(shuffled_ranks(99)).low1_time.has_value());
+    EXPECT_EQ(summarize_times(shuffled_ranks(100)).low1_time, 100) << "50.5 of 5050 is one frame's";
 }
 
 TEST(TimeSummary, low1_needs_a_hundred_frames_and_never_takes_more_than_one_percent) {

@@ -16,6 +16,8 @@ constexpr FigureColumn kResources[] = {
     {"preprocessing, s", of<&Cell::prepare_s>},
     {"CPU time, s", of<&Cell::prepare_cpu_s>},
     {"start-up, s", of<&Cell::upload_s>},
+    {"first frame, ms", of<&Cell::first_frame_ms>, 1, 1,
+     "the first frame that it draws, in the warm-up where there is one"},
     {"allocated on the GPU, MiB", of<&Cell::gpu_bytes>, 1, results::kMebibyte},
     {"peak resident size, MiB", of<&Cell::peak_rss_bytes>, 1, results::kMebibyte},
     {"uploaded a frame, MiB", of<&Cell::uploaded_bytes, &CountSummary::mean>, 3,
@@ -28,9 +30,9 @@ struct ResourceBars {
     const FigureColumn* resource;
 };
 constexpr ResourceBars kBars[] = {{"Preprocessing", &kResources[0]},
-                                  {"GPU memory", &kResources[3]},
-                                  {"Resident memory", &kResources[4]},
-                                  {"Uploaded", &kResources[5]}};
+                                  {"GPU memory", &kResources[4]},
+                                  {"Resident memory", &kResources[5]},
+                                  {"Uploaded", &kResources[6]}};
 
 Plot resource_plot(const ReportData& data, const ResultSet& set, const char* title,
                    const FigureColumn& resource) {
