@@ -20,7 +20,8 @@ MAY_INCLUDE = {
     "measure": {"api", "base", "gl"},
     "results": {"api", "base", "measure"},
     "picture": {"api", "base", "measure"},
-    "report": {"api", "base", "measure", "results", "picture"},
+    "trend": {"api", "base", "measure", "results"},
+    "report": {"api", "base", "measure", "results", "picture", "trend"},
     "run": {"api", "base", "common", "gl", "platform", "terrain", "scenario", "measure", "results", "picture"},
     "conformance": {"api", "base", "common", "gl", "measure", "results", "run"},
 }
