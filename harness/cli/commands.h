@@ -19,6 +19,7 @@ void add_cell(CLI::App& app, int& status);  ///< hidden: the child process of `r
 void add_plan(CLI::App& app, int& status);
 void add_merge(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
+void add_trend(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
 void add_terrain(CLI::App& app, int& status);
 void add_new_method(CLI::App& app, int& status);

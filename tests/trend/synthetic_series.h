@@ -1,6 +1,7 @@
 #pragma once
 // Series of runs of which it is known where they take a step.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
