@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -21,13 +22,17 @@ std::string exact_text(const Json::Value& value) {
     return value.isString() ? value.asString() : results::to_text(value);
 }
 
+/// Four digits, or whole where that is more: bytes.
+std::string time_text(double value) {
+    return std::abs(value) < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
+}
+
 void add_times(const trend::Trends& trends, std::vector<StepRow>& rows) {
     for (std::size_t i = 0; i < trends.figures.size(); ++i) {
         const trend::FigureHistory& figure = trends.history.figures[i];
         for (const trend::Step& step : trends.figures[i].steps) {
             rows.push_back({figure.series, figure.runs[step.place - 1], figure.runs[step.place],
-                            figure.figure, fmt::format("{:.4g}", step.before),
-                            fmt::format("{:.4g}", step.after),
+                            figure.figure, time_text(step.before), time_text(step.after),
                             trend::change_text(step.before, step.after), step.p_value});
         }
     }

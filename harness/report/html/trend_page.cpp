@@ -38,6 +38,11 @@ struct Subject {
 using SubjectKey =
     std::pair<std::tuple<std::string, std::string, std::string, std::string>, std::string>;
 
+std::string chance_text(std::optional<double> p_value) {
+    if (!p_value) return "-";
+    return *p_value < 1e-15 ? "< 1e-15" : fmt::format("{:.1e}", *p_value);
+}
+
 class TrendPage {
 public:
     TrendPage(const Trends& trends, const std::string& name)
@@ -129,7 +134,7 @@ private:
             for (const std::string& text :
                  {run(row.run).started, commit_text(run(row.run)), commit_text(run(row.previous)),
                   name.scenario, trends_.labels[row.series], row.figure, row.before, row.after,
-                  row.change, row.p_value ? fmt::format("{:.1e}", *row.p_value) : "-"}) {
+                  row.change, chance_text(row.p_value)}) {
                 fields.push_back(text_field(text));
             }
             if (machines) fields.push_back(text_field(name.machine));
@@ -212,6 +217,8 @@ private:
         plot.x_title = "run, in the order in which they began";
         plot.y_title = subject.figure;
         plot.counts = true;
+        plot.from_zero = times_.contains({first, subject.figure});
+        if (!plot.from_zero) plot.notes.emplace_back("The axis spans the values alone.");
         if (has_several_flights(trends_)) plot.notes.push_back(series(first).flight);
         for (const std::size_t i : subject.series) add_curves(plot, i, subject.figure);
         return plot;
