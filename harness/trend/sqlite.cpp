@@ -39,6 +39,14 @@ std::string no_database(const fs::path& path, const char* why) {
                        path.string(), why);
 }
 
+/// The system's error behind SQLite's last one; 0 where there is none.
+int system_error_of(sqlite3* handle) {
+    if (const int error = sqlite3_system_errno(handle); error != 0) return error;
+    int error = 0;  // of a commit that failed only the file knows
+    sqlite3_file_control(handle, "main", SQLITE_FCNTL_LAST_ERRNO, &error);
+    return error;
+}
+
 bool is_full(int code, int system_error) {
     return (code & 0xFF) == SQLITE_FULL ||
            ((code & 0xFF) == SQLITE_IOERR &&
@@ -101,8 +109,8 @@ void Connection::damaged(std::string_view what) const {
 }
 
 void Connection::fail(int code) const {
-    const int system_error = sqlite3_system_errno(handle());
     const std::string words = sqlite3_errmsg(handle());
+    const int system_error = system_error_of(handle());
     if (is_full(code, system_error)) {
         throw base::DiskFullError(fmt::format(
             "cannot write {}: {}; the history is as it was: make room there, or choose another "
