@@ -21,6 +21,7 @@ void add_merge(CLI::App& app, int& status);
 void add_compare(CLI::App& app, int& status);
 void add_baseline(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
+void add_trend(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
 void add_terrain(CLI::App& app, int& status);
 void add_new_method(CLI::App& app, int& status);

@@ -57,7 +57,7 @@ class Documents(unittest.TestCase):
         self.assertEqual(sorted(table), sorted(" ".join(command) for command in commands()))
 
     def test_every_command_has_help(self):
-        for command in [[], ["terrain"], *commands()]:
+        for command in [[], ["terrain"], ["trend"], *commands()]:
             status, text = run(*command, "--help")
             self.assertEqual(status, 0, text)
             self.assertIn("--help", text, command)
@@ -71,7 +71,7 @@ class Documents(unittest.TestCase):
     def test_pages_use_options_that_exist(self):
         used = 0
         for line in code_lines():
-            call = re.match(r"^(?:\S*/)?lodbench ((?:terrain )?[a-z-]+)(.*)", line)
+            call = re.match(r"^(?:\S*/)?lodbench ((?:terrain |trend )?[a-z-]+)(.*)", line)
             if not call:
                 continue
             help_text = run(*call.group(1).split(), "--help")[1]

@@ -21,7 +21,8 @@ MAY_INCLUDE = {
     "results": {"api", "base", "measure"},
     "compare": {"api", "base", "measure", "results"},
     "picture": {"api", "base", "measure"},
-    "report": {"api", "base", "measure", "results", "compare", "picture"},
+    "trend": {"api", "base", "measure", "results"},
+    "report": {"api", "base", "measure", "results", "compare", "picture", "trend"},
     "run": {"api", "base", "common", "gl", "platform", "terrain", "scenario", "measure", "results", "picture"},
     "conformance": {"api", "base", "common", "gl", "measure", "results", "run"},
 }

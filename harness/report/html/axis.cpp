@@ -38,13 +38,24 @@ double Axis::place(double value) const {
     return begin_ + fraction * (end_ - begin_);
 }
 
+double Axis::step() const {
+    const double nice = picture::nice_scale((high_ - low_) / 6);
+    return scale_ == Scale::counting ? std::max(1.0, nice) : nice;
+}
+
+std::string Axis::tick_label(double tick) const {
+    constexpr std::size_t kRoom = 8;  // characters beside the picture
+    const double digits = -std::floor(std::log10(step()));
+    if (scale_ != Scale::spanning || !(digits < double(kRoom))) return tick_text(tick);
+    std::string label = fmt::format("{:.{}f}", tick, int(std::max(0.0, digits)));
+    return label.size() <= kRoom ? label : tick_text(tick);
+}
+
 std::vector<double> Axis::ticks() const {
     std::vector<double> ticks;
     if (scale_ != Scale::logarithmic) {
-        const double nice = picture::nice_scale((high_ - low_) / 6);
-        const double step = scale_ == Scale::counting ? std::max(1.0, nice) : nice;
-        for (double k = std::ceil(low_ / step); k * step <= high_ && ticks.size() < 20; ++k) {
-            ticks.push_back(k * step);
+        for (double k = std::ceil(low_ / step()); k * step() <= high_ && ticks.size() < 20; ++k) {
+            ticks.push_back(k * step());
         }
         return ticks;
     }

@@ -53,6 +53,8 @@ struct Plot {
     std::string title;
     std::string x_title, y_title;  ///< with units
     bool counts = false;  ///< x is a number of something: that axis is linear, its ticks whole
+    bool from_zero =
+        true;  ///< else a linear y spans the values alone, so that a small change shows
     bool can_be_logarithmic = false;
     bool logarithmic =
         false;  ///< as it is drawn at first, both axes; of bars the one that they have

@@ -81,7 +81,7 @@ std::string y_axis(const Axis& axis, const std::string& title) {
         svg += fmt::format(
             "<path class=\"grid\" d=\"M{} {:.1f}H{}\"/><text x=\"{}\" y=\"{:.1f}\" "
             "class=\"end\">{}</text>",
-            kLeft, y, kRight, kLeft - 6, y + 4, tick_text(tick));
+            kLeft, y, kRight, kLeft - 6, y + 4, axis.tick_label(tick));
     }
     return svg + fmt::format(
                      "\n<text transform=\"translate(13 {:.1f}) rotate(-90)\" class=\"mid "
@@ -156,7 +156,8 @@ Drawing draw_curves(const Plot& plot) {
     }
     const Axis::Scale scale = scale_of(plot);
     const Axis x(xs, plot.counts ? Axis::Scale::counting : scale, kLeft, kRight);
-    const Axis y(ys, scale, kBottom, kTop);
+    const bool spanning = !plot.from_zero && scale != Axis::Scale::logarithmic;
+    const Axis y(ys, spanning ? Axis::Scale::spanning : scale, kBottom, kTop);
     std::string svg =
         x_axis(x, plot.x_title, kTop, kBottom, kLeft, kRight) + y_axis(y, plot.y_title);
     for (const Series& series : plot.series) svg += series_svg(series, x, y);
