@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <ostream>
 #include <random>
 #include <string>
 #include <unordered_map>
@@ -130,6 +131,10 @@ struct ClosedCase {
     int rows, columns;
     std::vector<std::pair<std::string, std::string>> settings;
 };
+inline void PrintTo(const ClosedCase& one, std::ostream* stream) {
+    *stream << one.ground << ' ' << one.rows << " x " << one.columns;
+    for (const auto& [name, value] : one.settings) *stream << ' ' << name << '=' << value;
+}
 
 inline std::shared_ptr<const terrain::HeightField> ground_of(const ClosedCase& one) {
     if (std::string(one.ground) == "puget") return puget_sound();
