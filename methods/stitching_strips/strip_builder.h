@@ -29,7 +29,7 @@ struct StripVertex {
 
 class StripBuilder {
 public:
-    /// `threads`: 0: as many as there are processors.
+    /// `threads`: 0, or more than there are processors: as many as these.
     StripBuilder(const BlockTree& tree, int threads);
 
     /// Of all splits of the cut, or of what of them may be seen. Runs in three steps, which are

@@ -1,0 +1,45 @@
+// 300 cameras a method and ground, thresholds of 0.5 to 8 pixels: no hole, no overlap.
+
+#include <cstdlib>
+
+#include "whole_surfaces.h"
+
+namespace lodbench::test {
+namespace {
+
+const std::vector<double> kTolerances = {0.5, 1, 2, 4, 8};
+
+class WholeSurfaces : public testing::TestWithParam<const char*> {};
+
+TEST_P(WholeSurfaces, of_300_cameras_over_synthetic_terrains) {
+    for (const NamedTerrain& ground : synthetic_terrains()) {
+        expect_whole_surfaces(GetParam(), ground, {}, kTolerances, 60, 11);
+    }
+}
+
+TEST_P(WholeSurfaces, of_300_cameras_over_puget_sound) {
+    expect_whole_surfaces(GetParam(), {"puget", puget_sound()}, {}, kTolerances, 60, 12);
+}
+
+/// Any raster, such as that of Mount St Helens: LODBENCH_TEST_TERRAIN="file spacing
+/// vertical_scale".
+TEST_P(WholeSurfaces, of_300_cameras_over_a_terrain_of_ones_own) {
+    const char* given = std::getenv("LODBENCH_TEST_TERRAIN");
+    if (given == nullptr) GTEST_SKIP() << "LODBENCH_TEST_TERRAIN is not set";
+    std::istringstream words(given);
+    terrain::TerrainSource source;
+    std::string file;
+    words >> file >> source.spacing_x >> source.vertical_scale;
+    source.file = file;
+    source.spacing_y = source.spacing_x;
+    expect_whole_surfaces(GetParam(), {file, terrain::load_terrain(source)}, {}, kTolerances, 60,
+                          13);
+}
+
+INSTANTIATE_TEST_SUITE_P(methods, WholeSurfaces, testing::Values("dss", "tess-pow2"),
+                         [](const auto& chosen) {
+                             return std::string(chosen.param) == "dss" ? "dss" : "tess_pow2";
+                         });
+
+}  // namespace
+}  // namespace lodbench::test
