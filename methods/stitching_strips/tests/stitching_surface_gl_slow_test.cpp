@@ -1,6 +1,7 @@
 // 300 cameras a method and ground, thresholds of 0.5 to 8 pixels: no hole, no overlap.
 
 #include <cstdlib>
+#include <sstream>
 
 #include "whole_surfaces.h"
 
@@ -29,9 +30,11 @@ TEST_P(WholeSurfaces, of_300_cameras_over_a_terrain_of_ones_own) {
     std::istringstream words(given);
     terrain::TerrainSource source;
     std::string file;
-    words >> file >> source.spacing_x >> source.vertical_scale;
+    double spacing = 0, scale = 0;
+    ASSERT_TRUE(words >> file >> spacing >> scale) << given;
     source.file = file;
-    source.spacing_y = source.spacing_x;
+    source.spacing_x = source.spacing_y = spacing;
+    source.vertical_scale = scale;
     expect_whole_surfaces(GetParam(), {file, terrain::load_terrain(source)}, {}, kTolerances, 60,
                           13);
 }
