@@ -47,6 +47,18 @@ constexpr ParamSpec kPow2Params[] = {
     kCulling,
     choice_param("round", "down", "down|up", "to which power of two a factor is rounded")};
 
+constexpr ParamSpec kUniformParams[] = {
+    real_param("tau", 1, 0.01, 1000,
+               "pixels: screen-space error threshold, or with metric = edge_length a segment's "
+               "length"),
+    kError,
+    kViewAngle,
+    kCulling,
+    integer_param("block_cells", 128, 1, 4096, "cells along a block's side"),
+    choice_param("metric", "error", "error|edge_length",
+                 "what a factor follows from: the error of its edge or block, or how long its edge "
+                 "is on screen")};
+
 constexpr MethodDescriptor kMethods[] = {
     {.id = "dss",
      .title = "Zhang et al.: tessellated blocks with continuous factors, stitched by strips that "
@@ -73,6 +85,20 @@ constexpr MethodDescriptor kMethods[] = {
      .quality_knob = "tau",
      .claimed_bound = nullptr,
      .create = create_tess_pow2,
+     .destroy = destroy_method},
+    {.id = "tess-uniform",
+     .title =
+         "Zhang et al.'s Method II: blocks of equal size, tessellated by continuous factors of "
+         "their edges",
+     .citation = kCitation,
+     .version = "1",
+     .capabilities = 0,
+     .gl_extensions = nullptr,
+     .params = kUniformParams,
+     .param_count = std::size(kUniformParams),
+     .quality_knob = "tau",
+     .claimed_bound = nullptr,
+     .create = create_tess_uniform,
      .destroy = destroy_method}};
 
 }  // namespace
