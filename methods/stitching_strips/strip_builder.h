@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/view_frustum.h"
@@ -44,6 +45,15 @@ public:
     [[nodiscard]] std::size_t strip_count() const { return strips_.size(); }
     [[nodiscard]] std::size_t patch_count() const { return patches_.size(); }  ///< P-blocks
     [[nodiscard]] std::size_t stretch_count() const { return stretches_.size(); }
+    /// The vertices of a strip's left and right side, along it.
+    struct SideVertices {
+        std::size_t first = 0, count = 0;
+    };
+    [[nodiscard]] std::pair<SideVertices, SideVertices> sides(std::size_t strip) const {
+        const Strip& found = strips_[strip];
+        return {{found.first_vertex, found.middle_vertex - found.first_vertex},
+                {found.middle_vertex, found.end_vertex - found.middle_vertex}};
+    }
     /// Of the last `build`.
     struct Seconds {
         double listing = 0, vertices = 0, triangles = 0;
