@@ -9,9 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <random>
-#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -25,7 +23,7 @@ namespace lodbench::test {
 class IndexedSurface {
 public:
     explicit IndexedSurface(const measure::CapturedSurface& surface) {
-        std::map<std::array<std::uint32_t, 3>, std::uint32_t> numbers;
+        std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, Hash> numbers;
         for (std::size_t i = 0; i < surface.vertices.size(); i += 3) {
             std::array<std::uint32_t, 3> triangle{};
             for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -55,7 +53,8 @@ public:
             low = glm::min(low, glm::dvec2(vertex));
             high = glm::max(high, glm::dvec2(vertex));
         }
-        std::unordered_map<std::uint64_t, int> directed;
+        std::vector<std::uint64_t> directed;
+        directed.reserve(3 * triangles_.size());
         double area = 0;
         std::size_t downward = 0;
         for (const auto& triangle : triangles_) {
@@ -63,14 +62,18 @@ public:
             if (twice <= 0) ++downward;
             area += twice / 2;
             for (std::size_t side = 0; side < 3; ++side) {
-                ++directed[key(triangle[side], triangle[(side + 1) % 3])];
+                directed.push_back(key(triangle[side], triangle[(side + 1) % 3]));
             }
         }
+        std::ranges::sort(directed);
         std::size_t repeated = 0, open = 0;
-        for (const auto& [edge, uses] : directed) {
-            const auto from = std::uint32_t(edge >> 32U), to = std::uint32_t(edge);
-            if (uses > 1) ++repeated;
-            if (!directed.contains(key(to, from)) && !on_border(from, to, low, high)) ++open;
+        for (std::size_t i = 0; i < directed.size(); ++i) {
+            if (i > 0 && directed[i] == directed[i - 1]) ++repeated;
+            const auto from = std::uint32_t(directed[i] >> 32U), to = std::uint32_t(directed[i]);
+            if (!std::ranges::binary_search(directed, key(to, from)) &&
+                !on_border(from, to, low, high)) {
+                ++open;
+            }
         }
         std::string words;
         const auto say = [&](const std::string& what) { words += what + "; "; };
@@ -102,6 +105,16 @@ public:
     }
 
 private:
+    struct Hash {
+        std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const {
+            std::size_t mixed = 0;
+            for (const std::uint32_t word : bits) {
+                mixed = (mixed ^ word) * 0x9E3779B97F4A7C15U;
+                mixed ^= mixed >> 29U;
+            }
+            return mixed;
+        }
+    };
     static std::uint64_t key(std::uint32_t from, std::uint32_t to) {
         return std::uint64_t(from) << 32U | to;
     }
