@@ -33,7 +33,7 @@ constexpr ParamSpec kDssParams[] = {
     kStraightDown,
     kDistance,
     kCulling,
-    integer_param("strip_width", 0, 0, 64,
+    integer_param("strip_width", 1, 0, 64,
                   "width of a strip in cells; 0: one segment of the blocks beside it at factor 64, "
                   "at least one cell"),
     integer_param("threads", 0, 0, 64,
