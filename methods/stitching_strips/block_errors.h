@@ -28,8 +28,8 @@ using BlockErrors = std::array<float, kErrorCount>;  ///< by index; see factor_o
 [[nodiscard]] std::vector<BlockErrors> block_errors(const GroundHeights& ground,
                                                     std::span<const Square> blocks, ErrorKind kind);
 
-/// The same for one block and factor as the definition has it, a sample after the other: what the
-/// fast form is tested against.
+/// The same for one block and factor (2, 4 ... 64) as the definition has it, a sample after the
+/// other: what the fast form is tested against.
 [[nodiscard]] double plain_block_error(const GroundHeights& ground, const Square& block, int factor,
                                        ErrorKind kind);
 

@@ -93,6 +93,9 @@ void BlockScene::draw() {
             device_->draw_arrays(program_, none_, GL_PATCHES, first, count);
         });
     glPatchParameteri(GL_PATCH_VERTICES, 3);
+    // Mesa (22.3) has the next program hold the place of the tessellation stages, if it has none,
+    // and never lets go of it.
+    glUseProgram(0);
 }
 
 }  // namespace lodbench::stitching_strips

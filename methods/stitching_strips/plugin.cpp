@@ -33,7 +33,7 @@ constexpr ParamSpec kDssParams[] = {
     kStraightDown,
     kDistance,
     kCulling,
-    integer_param("strip_width", 0, 0, 64,
+    integer_param("strip_width", 1, 0, 64,
                   "width of a strip in cells; 0: one segment of the blocks beside it at factor 64, "
                   "at least one cell"),
     integer_param("threads", 0, 0, 64,
@@ -54,7 +54,9 @@ constexpr ParamSpec kUniformParams[] = {
     kError,
     kViewAngle,
     kCulling,
-    integer_param("block_cells", 128, 1, 4096, "cells along a block's side"),
+    integer_param("block_cells", 0, 0, 4096,
+                  "cells along a block's side; 0: an eighth of the terrain's longer side, at most "
+                  "128"),
     choice_param("metric", "error", "error|edge_length",
                  "what a factor follows from: the error of its edge or block, or how long its edge "
                  "is on screen")};

@@ -6,7 +6,7 @@
 namespace lodbench::stitching_strips {
 namespace {
 
-constexpr float kMost = 64;
+constexpr float kMost = 64, kNextToMost = 62;
 
 /// Of TerrainBlock::outer, which goes west, south, east, north.
 float& outer_factor(TerrainBlock& block, int edge) {
@@ -25,6 +25,7 @@ float power(int exponent) {
 }  // namespace
 
 float power_of_two(float factor, Rounding rounding) {
+    if (factor > kNextToMost) return kMost;
     int exponent = 0;
     const float share = std::frexp(factor, &exponent);  // factor = share * 2^exponent, from 1/2 on
     const bool exact = share == 0.5F;

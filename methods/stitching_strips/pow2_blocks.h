@@ -13,7 +13,8 @@ namespace lodbench::stitching_strips {
 
 enum class Rounding { down, up };
 
-/// 2, 4 ... 64: the power of two below or above a factor of 2 to 64.
+/// 2, 4 ... 64: the power of two below or above a factor of 2 to 64. Above 62 it is 64 in any case:
+/// no other of the 32 factors keeps the threshold, and (4) reaches 64 itself only as a limit.
 [[nodiscard]] float power_of_two(float factor, Rounding rounding);
 
 /// The cut of a camera, and what the GPU is told of its blocks.

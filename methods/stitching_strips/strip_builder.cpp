@@ -36,7 +36,8 @@ std::size_t segments_before(std::span<const double> side, double place) {
 }
 
 StripBuilder::StripBuilder(const BlockTree& tree, int threads) : tree_(tree) {
-    if (threads > 0) arena_ = std::make_unique<tbb::task_arena>(threads);
+    const int processors = tbb::this_task_arena::max_concurrency();
+    if (threads > 0 && threads < processors) arena_ = std::make_unique<tbb::task_arena>(threads);
 }
 
 template <typename Work>

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/view_frustum.h"
@@ -29,7 +30,7 @@ struct StripVertex {
 
 class StripBuilder {
 public:
-    /// `threads`: 0: as many as there are processors.
+    /// `threads`: 0, or more than there are processors: as many as these.
     StripBuilder(const BlockTree& tree, int threads);
 
     /// Of all splits of the cut, or of what of them may be seen. Runs in three steps, which are
@@ -44,6 +45,15 @@ public:
     [[nodiscard]] std::size_t strip_count() const { return strips_.size(); }
     [[nodiscard]] std::size_t patch_count() const { return patches_.size(); }  ///< P-blocks
     [[nodiscard]] std::size_t stretch_count() const { return stretches_.size(); }
+    /// The vertices of a strip's left and right side, along it.
+    struct SideVertices {
+        std::size_t first = 0, count = 0;
+    };
+    [[nodiscard]] std::pair<SideVertices, SideVertices> sides(std::size_t strip) const {
+        const Strip& found = strips_[strip];
+        return {{found.first_vertex, found.middle_vertex - found.first_vertex},
+                {found.middle_vertex, found.end_vertex - found.middle_vertex}};
+    }
     /// Of the last `build`.
     struct Seconds {
         double listing = 0, vertices = 0, triangles = 0;

@@ -46,7 +46,10 @@ Fixed place(const HalfEdge& half, Fixed index) {
     const Fixed on_fine = index * segment_length(half.fine_segments);
     const bool behind = half.share > 0 && index > half.split;
     const Fixed on_coarse = (behind ? index - 1 : index) * segment_length(half.coarse_segments);
-    return (on_coarse * (kOne - half.share) + on_fine * half.share + kHalf) / kOne;
+    const Fixed blended = (on_coarse * (kOne - half.share) + on_fine * half.share + kHalf) / kOne;
+    // 3 segments of 1/6, rounded, are longer than a half, and 15 of 1/30: Direct3D's vertex that
+    // has just begun to leave the middle is beyond it, at factors just above 6 and up to 30.007.
+    return std::min(blended, kHalf);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ float tess_coordinate(int index, float factor) {
     uint i = uint(mirrored ? int(2u * fine) - index : index);
     uint on_fine = i * ((65536u + fine) / (2u * fine));
     uint on_coarse = (share > 0u && i > split ? i - 1u : i) * ((65536u + coarse) / (2u * coarse));
-    uint place = i == fine ? 32768u : (on_coarse * (65536u - share) + on_fine * share + 32768u) >> 16u;
+    uint blended = (on_coarse * (65536u - share) + on_fine * share + 32768u) >> 16u;
+    uint place = i == fine ? 32768u : min(blended, 32768u);  // see tess_coordinates.cpp
     return float(mirrored ? 65536u - place : place) / 65536.0;
 }

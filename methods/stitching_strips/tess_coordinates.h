@@ -2,9 +2,10 @@
 // Where a tessellator places the vertices of a quad: `fractional_even_spacing` (Zhang 2019, 3.2.2),
 // on the CPU. OpenGL 4.5, 11.2.2, fixes how many segments an edge has and that two of them are
 // shorter, but neither their length nor their place. Both are here as Direct3D 11 prescribes them,
-// in fixed point of 16 bits: so does Mesa's software rasteriser, to the bit. tess_coordinates.glsl
-// is the same function for shaders, which need no agreement with the driver's: whoever places both
-// sides of a seam with it is watertight on any.
+// in fixed point of 16 bits: so does Mesa's software rasteriser, to the bit, but for a vertex that
+// it has on the wrong side of the middle at factors from 6 to 6.0003 and from 30 to 30.007.
+// tess_coordinates.glsl is the same function for shaders, which need no agreement with the
+// driver's: whoever places both sides of a seam with it is watertight on any.
 
 #include <array>
 #include <cstddef>

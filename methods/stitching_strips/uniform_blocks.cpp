@@ -36,8 +36,10 @@ float line_error(std::span<const float> heights, int factor, ErrorKind kind) {
 
 }  // namespace
 
-UniformBlocks::UniformBlocks(int rows, int columns, int cells_)
-    : cells(cells_), count((columns - 2) / cells_ + 1, (rows - 2) / cells_ + 1) {}
+UniformBlocks::UniformBlocks(int rows, int columns, int cells_) : cells(cells_) {
+    if (cells == kEighth) cells = std::min((std::max(rows, columns) + 6) / 8, 128);
+    count = {(columns - 2) / cells + 1, (rows - 2) / cells + 1};
+}
 
 BlockErrors line_errors(std::span<const float> heights, ErrorKind kind) {
     BlockErrors errors{};

@@ -19,7 +19,9 @@ struct UniformBlocks {
     int cells = 0;
     glm::ivec2 count{0};  ///< eastward, northward
 
-    UniformBlocks(int rows, int columns, int cells);
+    /// 8 x 8 over 1025 x 1025 samples, as many over fewer; over more, blocks of that size.
+    static constexpr int kEighth = 0;
+    UniformBlocks(int rows, int columns, int cells = kEighth);
     [[nodiscard]] int size() const { return count.x * count.y; }
     /// West to east, row upon row from the south.
     [[nodiscard]] Square block(int number) const {

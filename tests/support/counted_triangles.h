@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "support/method_fixture.h"
 
@@ -14,6 +17,7 @@ namespace lodbench::test {
 struct Flyer {
     const char* plugin;
     const char* method;
+    std::vector<std::pair<std::string, std::string>> settings = {};
 };
 inline void PrintTo(const Flyer& flyer, std::ostream* stream) {
     *stream << flyer.method;
@@ -22,7 +26,7 @@ inline void PrintTo(const Flyer& flyer, std::ostream* stream) {
 class CountedTriangles : public testing::TestWithParam<Flyer> {};
 
 TEST_P(CountedTriangles, are_those_captured_from_every_side) {
-    Flight flight(hills(100, 131), GetParam().plugin, GetParam().method);
+    Flight flight(hills(100, 131), GetParam().plugin, GetParam().method, GetParam().settings);
     std::uint64_t most = 0;
     for (const Camera& camera :
          {camera_at({512600, -2900, 900}, 40, -35), camera_at({512600, -2900, 250}, 200, 0, 20),

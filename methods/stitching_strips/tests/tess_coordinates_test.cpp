@@ -34,6 +34,16 @@ TEST(TessCoordinates, are_exact_at_powers_of_two) {
     }
 }
 
+TEST(TessCoordinates, ascend_also_where_rounded_segments_are_longer_than_half_an_edge) {
+    for (const int begin : {2, 6, 14, 30, 62}) {
+        for (int i = 0; i < 1000; ++i) {
+            const float factor = float(begin) + float(i) / 65536;
+            const std::vector<float> places = tess_coordinates(factor);
+            ASSERT_TRUE(std::ranges::is_sorted(places)) << factor;
+        }
+    }
+}
+
 TEST(TessCoordinates, go_from_0_to_1_through_the_middle_ascending_and_symmetric_to_the_bit) {
     for_all_factors([](float factor) {
         const std::vector<float> places = tess_coordinates(factor);

@@ -39,9 +39,11 @@ TEST_F(TessUniform, has_about_the_mean_error_that_it_allows_until_its_factor_is_
     const Camera camera = camera_at({512640, -2600, 600}, 0, -90);
     const double distance = glm::length(truth.sample(64, 64) - camera.position);
     for (const double tau : {0.01, 0.1, 1.0}) {
-        Flight flight(
-            terrain, "stitching_strips", "tess-uniform",
-            {{"tau", std::to_string(tau)}, {"view_angle", "false"}, {"culling", "false"}});
+        Flight flight(terrain, "stitching_strips", "tess-uniform",
+                      {{"tau", std::to_string(tau)},
+                       {"block_cells", "128"},
+                       {"view_angle", "false"},
+                       {"culling", "false"}});
         const measure::DrawnSurface drawn(flight.surface(camera), terrain->info());
         double sum = 0;
         for (int row = 0; row < 129; ++row) {

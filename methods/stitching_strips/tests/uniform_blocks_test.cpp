@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "support/method_fixture.h"
 
@@ -35,6 +36,16 @@ TEST(UniformBlocks, cover_the_grid_and_begin_within_it) {
         const UniformBlocks layout(samples, 2, 128);
         EXPECT_EQ(layout.count, glm::ivec2(1, blocks)) << samples;
     }
+}
+
+TEST(UniformBlocks, are_8_by_8_until_they_are_128_cells_large) {
+    for (const auto& [samples, cells, count] :
+         {std::tuple(1025, 128, 8), {257, 32, 8}, {1024, 128, 8}, {258, 33, 8}, {4097, 128, 32}}) {
+        const UniformBlocks layout(samples, samples);
+        EXPECT_EQ(layout.cells, cells) << samples;
+        EXPECT_EQ(layout.count, glm::ivec2(count)) << samples;
+    }
+    EXPECT_EQ(UniformBlocks(2, 2).cells, 1);
 }
 
 TEST(UniformErrors, are_those_of_each_edge_and_block_in_their_order) {
