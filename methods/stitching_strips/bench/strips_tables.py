@@ -33,7 +33,11 @@ def fly(options, method, settings):
         arguments = [options.program, "run", options.scenario, "--method", method, "--repeat", "1", "--out", out]
         for name, value in settings.items():
             arguments += ["--set", f"{method}.{name}={value}"]
-        subprocess.run(arguments + options.more, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        if options.frames:
+            arguments += ["--frames", str(options.frames)]
+        if options.honesty:
+            arguments += ["--override", "measure.whole=false"]
+        subprocess.run(arguments, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         (cell,) = [json.loads(line) for line in (out / "cells.jsonl").read_text(encoding="utf-8").splitlines()]
         with open(next((out / "frames").glob("*.csv")), encoding="utf-8", newline="") as file:
             return cell, list(csv.DictReader(file))
@@ -87,7 +91,8 @@ def main():
     parser.add_argument("--program", default=ROOT / "build/release/bin/lodbench", type=pathlib.Path)
     parser.add_argument("--taus", default="1,2,4,8", help="separated by commas")
     parser.add_argument("--honesty", action="store_true", help="dss with the variants of its metric")
-    options, options.more = parser.parse_known_args()
+    parser.add_argument("--frames", type=int, help="default: the scenario's")
+    options = parser.parse_args()
     (print_honesty if options.honesty else print_claims)(options)
 
 
