@@ -77,8 +77,8 @@ TEST_F(HealthCli, what_sysfs_says_of_the_cpu_stands_in_the_results) {
     EXPECT_TRUE(run_of(out)["health"]["cpu_max_mhz"].isNull());
     const Json::Value health = cells_of(out).at(0)["health"];
     ASSERT_TRUE(health.isObject());
-    EXPECT_EQ(health["cpu_mhz"]["begin"], 3100);
-    EXPECT_EQ(health["cpu_mhz"]["end"], 3100);
+    EXPECT_EQ(health["cpu_mhz"]["begin"].asDouble(), 3100);
+    EXPECT_EQ(health["cpu_mhz"]["end"].asDouble(), 3100);
     EXPECT_GE(health["samples"].asInt(), 1);
     EXPECT_GE(health["cores"].asInt(), 1);
     EXPECT_GT(health["seconds"].asDouble(), 0);
