@@ -36,7 +36,7 @@ std::optional<std::string> knob_text(const results::CellGroup& group,
 EqualRow row_of(const results::CellGroup& group, const EqualFlight& flight,
                 const std::map<std::string, std::string>& knobs) {
     const auto middle = [&](const results::CellFigure& figure) {
-        return measure::median(results::numbers_of(group.good, figure));
+        return measure::median(results::numbers_of(group, figure));
     };
     EqualRow row;
     row.group = &group;

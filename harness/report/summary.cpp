@@ -43,6 +43,7 @@ std::string summary_text(const std::vector<results::CellRecord>& cells,
     text += markdown_table(table_rows(cells, seed));
     std::vector<std::string> remarks = warnings;
     std::ranges::copy(results::device_differences(cells), std::back_inserter(remarks));
+    std::ranges::copy(results::borrowed_truth(cells), std::back_inserter(remarks));
     const auto fold = [&text](const std::string& title) {
         text += fmt::format("\n<details><summary>{}</summary>\n\n", title);
     };

@@ -76,23 +76,23 @@ std::vector<TableRow> table_rows(const std::vector<results::CellRecord>& cells,
         const auto& good = group.good;
         row.fields = {
             fps_text(good, seed),
-            median(results::numbers_of(good, of<&Cell::frame_ms, &TimeSummary::median>), "{:.3f}"),
-            median(results::numbers_of(good, of<&Cell::frame_ms, &TimeSummary::p90>), "{:.3f}"),
-            greatest(results::numbers_of(good, of<&Cell::frame_ms, &TimeSummary::max>), "{:.3f}"),
-            median(results::numbers_of(good, of<&Cell::triangles, &CountSummary::mean>), "{:.0f}"),
-            median(results::numbers_of(good, of<&Cell::prepare_s>), "{:.3f}"),
-            median(results::numbers_of(good, of<&Cell::gpu_bytes>), "{:.1f}", results::kMebibyte),
-            greatest(results::numbers_of(good, of<&Cell::peak_rss_bytes>), "{:.0f}",
+            median(results::numbers_of(group, of<&Cell::frame_ms, &TimeSummary::median>), "{:.3f}"),
+            median(results::numbers_of(group, of<&Cell::frame_ms, &TimeSummary::p90>), "{:.3f}"),
+            greatest(results::numbers_of(group, of<&Cell::frame_ms, &TimeSummary::max>), "{:.3f}"),
+            median(results::numbers_of(group, of<&Cell::triangles, &CountSummary::mean>), "{:.0f}"),
+            median(results::numbers_of(group, of<&Cell::prepare_s>), "{:.3f}"),
+            median(results::numbers_of(group, of<&Cell::gpu_bytes>), "{:.1f}", results::kMebibyte),
+            greatest(results::numbers_of(group, of<&Cell::peak_rss_bytes>), "{:.0f}",
                      results::kMebibyte),
-            median(results::numbers_of(good, of<&Cell::pixel_error_px, &ErrorFigures::p999>),
+            median(results::numbers_of(group, of<&Cell::pixel_error_px, &ErrorFigures::p999>),
                    "{:.2f}"),
-            median(results::numbers_of(good, of<&Cell::pixel_error_px, &ErrorFigures::max>),
+            median(results::numbers_of(group, of<&Cell::pixel_error_px, &ErrorFigures::max>),
                    "{:.2f}"),
-            median(results::numbers_of(good, of<&Cell::crack_pixels, &TotalAndMax::total>),
+            median(results::numbers_of(group, of<&Cell::crack_pixels, &TotalAndMax::total>),
                    "{:.0f}"),
-            median(results::numbers_of(good, of<&Cell::popping_px, &PoppingFigures::p999>),
+            median(results::numbers_of(group, of<&Cell::popping_px, &PoppingFigures::p999>),
                    "{:.2f}"),
-            median(results::numbers_of(good, of<&Cell::bound_honesty>), "{:.3f}")};
+            median(results::numbers_of(group, of<&Cell::bound_honesty>), "{:.3f}")};
         rows.push_back(std::move(row));
     }
     return rows;

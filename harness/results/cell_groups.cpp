@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "results/deterministic.h"
 #include "results/health.h"
 
 namespace lodbench::results {
@@ -60,6 +61,42 @@ std::string setting_of(const CellRecord& cell, const SweptNames& swept) {
         setting += fmt::format("{}{}={}", setting.empty() ? "" : " ", name, param_text(cell, name));
     }
     return setting;
+}
+
+bool measures_truth(const CellRecord* cell) {
+    return cell->truth_frames.has_value();
+}
+
+/// Whether two devices were given the same to draw, as far as their counts tell.
+bool drew_the_same(const CellRecord& a, const CellRecord& b) {
+    const auto same = [](const std::optional<CountSummary>& left,
+                         const std::optional<CountSummary>& right) {
+        return left && right && left->mean == right->mean && left->min == right->min &&
+               left->max == right->max;
+    };
+    return same(a.triangles, b.triangles) && same(a.draw_calls, b.draw_calls);
+}
+
+/// Lends the truth to those groups that have none of their own.
+void lend_truth(std::vector<CellGroup>& groups) {
+    std::map<std::pair<std::string, std::string>, const CellGroup*> lenders;
+    for (const CellGroup& group : groups) {
+        if (std::ranges::any_of(group.good, measures_truth)) {
+            lenders.emplace(std::pair(group.scenario, group.label), &group);
+        }
+    }
+    for (CellGroup& group : groups) {
+        const auto lender = lenders.find({group.scenario, group.label});
+        if (lender == lenders.end() || group.good.empty() ||
+            std::ranges::any_of(group.good, measures_truth)) {
+            continue;
+        }
+        for (const CellRecord* cell : lender->second->good) {
+            if (measures_truth(cell) && drew_the_same(*cell, *group.good.front())) {
+                group.measured_elsewhere.push_back(cell);
+            }
+        }
+    }
 }
 
 /// In words, where the cells that have `read` of it do not agree, and what that means.
@@ -187,7 +224,35 @@ std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {
     std::vector<CellGroup> result;
     result.reserve(groups.size());
     for (auto& [key, group] : groups) result.push_back(std::move(group));
+    if (!one_device) lend_truth(result);
     return result;
+}
+
+std::vector<double> numbers_of(const CellGroup& group, const CellFigure& figure) {
+    std::vector<double> values = numbers_of(group.good, figure);
+    if (!values.empty() || group.measured_elsewhere.empty()) return values;
+    const bool is_deterministic =
+        std::ranges::any_of(deterministic_fields(), [&figure](const DeterministicField& field) {
+            return field.elsewhere != DeterministicField::Elsewhere::never &&
+                   figure.is_within(field.name);
+        });
+    return is_deterministic ? numbers_of(group.measured_elsewhere, figure) : values;
+}
+
+std::vector<std::string> borrowed_truth(const std::vector<CellRecord>& cells) {
+    std::map<std::pair<std::string, std::string>, std::size_t> settings;  // by both devices
+    for (const CellGroup& group : group_cells(cells)) {
+        if (group.measured_elsewhere.empty()) continue;
+        ++settings[{group.device, group.measured_elsewhere.front()->device}];
+    }
+    std::vector<std::string> texts;
+    for (const auto& [devices, count] : settings) {
+        texts.push_back(fmt::format(
+            "the errors of {} setting{} on '{}' were measured on '{}': only the first repetition "
+            "measures the truth, and both drew the same triangles",
+            count, count == 1 ? "" : "s", devices.first, devices.second));
+    }
+    return texts;
 }
 
 }  // namespace lodbench::results

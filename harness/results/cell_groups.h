@@ -21,6 +21,10 @@ struct CellGroup {
     std::string setting;  ///< the latter alone: "tau=0.5"; "" where there is one setting
     std::vector<const CellRecord*> cells;  ///< all repetitions
     std::vector<const CellRecord*> good;   ///< those that are ok
+    /// Only the first repetition measures the truth, and so only one of several devices. For a
+    /// group of another: the good cells of the same setting there, where both drew the same
+    /// triangles.
+    std::vector<const CellRecord*> measured_elsewhere;
 
     /// What it can be compared with: "demo", or "demo on DEVICE" where there are several.
     [[nodiscard]] std::string comparison() const;
@@ -43,6 +47,9 @@ struct CellGroup {
 /// by what the sensors said.
 [[nodiscard]] std::vector<std::string> noise_of(const CellGroup& group);
 
+/// In words, that a device's errors are those that another measured: a line for two devices.
+[[nodiscard]] std::vector<std::string> borrowed_truth(const std::vector<CellRecord>& cells);
+
 /// "true", "12", "0.5"
 [[nodiscard]] std::string value_text(const ParamValue& value);
 /// The value of a parameter; "-" where the cell has none of that name.
@@ -60,5 +67,9 @@ std::vector<double> numbers_of(const std::vector<const Record*>& records,
     }
     return values;
 }
+
+/// Those of a group's good cells. Where they have none, and the figure is deterministic, those that
+/// another device measured.
+[[nodiscard]] std::vector<double> numbers_of(const CellGroup& group, const CellFigure& figure);
 
 }  // namespace lodbench::results

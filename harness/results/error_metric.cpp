@@ -1,5 +1,6 @@
 #include "results/error_metric.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "measure/statistics.h"
@@ -36,9 +37,18 @@ std::optional<double> pixel_error(const CellRecord& cell, ErrorMetric metric) {
 
 std::optional<double> pixel_error(const CellGroup& group, ErrorMetric metric) {
     std::vector<double> errors;
-    for (const CellRecord* cell : group.good) {
-        if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
-    }
+    const auto add = [&](const std::vector<const CellRecord*>& cells) {
+        for (const CellRecord* cell : cells) {
+            if (const auto error = pixel_error(*cell, metric)) errors.push_back(*error);
+        }
+    };
+    add(group.good);
+    // Of an asynchronous method it is the error at its own pace, which says nothing of another
+    // device.
+    const bool is_deterministic = std::ranges::none_of(
+        group.measured_elsewhere,
+        [](const CellRecord* cell) { return cell->pixel_error_realtime_px.has_value(); });
+    if (errors.empty() && is_deterministic) add(group.measured_elsewhere);
     return measure::median(errors);
 }
 

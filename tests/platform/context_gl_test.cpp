@@ -29,6 +29,19 @@ TEST(Context, software_is_recognised_by_renderer) {
     }
 }
 
+TEST(Context, tells_software_from_a_gpu_and_names_the_gpu_as_files_and_uuids_are) {
+    const test::GlTest gl;
+    const GpuIdentity& gpu = gl.context.gpu();
+    EXPECT_EQ(gpu.software, gl.device.info().software);
+    EXPECT_EQ(gpu.vendor, gl.device.info().vendor);
+    if (gpu.software) {
+        EXPECT_EQ(gpu.node + gpu.uuid, "") << "no sensors are those of a rasteriser";
+        return;
+    }
+    EXPECT_EQ(gpu.node.find('/'), std::string::npos);
+    EXPECT_TRUE(gpu.uuid.empty() || gpu.uuid.size() == 36) << gpu.uuid;
+}
+
 TEST(Context, every_listed_device_opens_by_its_number_or_says_why_not) {
     const std::vector<DeviceEntry> devices = list_devices();
     ASSERT_FALSE(devices.empty());

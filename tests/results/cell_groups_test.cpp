@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "results/error_metric.h"
+
 namespace lodbench::results {
 namespace {
 
@@ -29,6 +31,51 @@ CellRecord cell(int repetition) {
 
 std::vector<std::string> disagreements(const std::vector<CellRecord>& cells) {
     return disagreements_of(group_cells(cells).at(0));
+}
+
+/// Repetition 0 on device A, which measured the truth, and 1 on B.
+std::vector<CellRecord> on_two_devices() {
+    std::vector<CellRecord> cells = {cell(0), cell(1)};
+    cells[0].device = "A";
+    cells[1].device = "B";
+    cells[0].truth_frames = 5;
+    cells[0].pixel_error_px.emplace().p999 = 0.75;
+    cells[0].frame_ms.emplace().median = 3;
+    cells[1].fps = 50;
+    return cells;
+}
+
+TEST(MeasuredElsewhere, errors_of_a_device_without_any_are_those_of_the_other_and_that_is_said) {
+    using namespace figures;
+    const std::vector<CellRecord> cells = on_two_devices();
+    const std::vector<CellGroup> groups = group_cells(cells);
+    ASSERT_EQ(groups.size(), 2U);
+    EXPECT_THAT(numbers_of(groups[0], of<&Cell::pixel_error_px, &ErrorFigures::p999>),
+                ElementsAre(0.75));
+    EXPECT_THAT(numbers_of(groups[1], of<&Cell::pixel_error_px, &ErrorFigures::p999>),
+                ElementsAre(0.75));
+    EXPECT_EQ(pixel_error(groups[1], ErrorMetric::p999), 0.75);
+    EXPECT_THAT(numbers_of(groups[1], of<&Cell::frame_ms, &TimeSummary::median>), IsEmpty())
+        << "times are each device's own";
+    EXPECT_THAT(numbers_of(groups[0], of<&Cell::fps>), IsEmpty()) << "and never borrowed back";
+    EXPECT_THAT(borrowed_truth(cells),
+                ElementsAre(HasSubstr("the errors of 1 setting on 'B' were measured on 'A'")));
+}
+
+TEST(MeasuredElsewhere, nothing_is_borrowed_from_what_drew_something_else_or_at_its_own_pace) {
+    using namespace figures;
+    std::vector<CellRecord> cells = on_two_devices();
+    cells[1].triangles->max = 12;
+    EXPECT_THAT(borrowed_truth(cells), IsEmpty());
+    EXPECT_THAT(numbers_of(group_cells(cells)[1], of<&Cell::pixel_error_px, &ErrorFigures::p999>),
+                IsEmpty());
+    cells = on_two_devices();
+    cells[0].pixel_error_realtime_px.emplace().p999 = 9;
+    const std::vector<CellGroup> groups = group_cells(cells);
+    EXPECT_EQ(pixel_error(groups[0], ErrorMetric::p999), 9);
+    EXPECT_EQ(pixel_error(groups[1], ErrorMetric::p999), std::nullopt);
+    EXPECT_THAT(numbers_of(groups[1], of<&Cell::pixel_error_realtime_px, &ErrorFigures::p999>),
+                IsEmpty());
 }
 
 TEST(Disagreements, of_equal_repetitions_are_none) {

@@ -119,7 +119,7 @@ TEST(Health, a_repetition_whose_clock_was_lower_all_the_time_is_flagged) {
 TEST(Health, survives_its_way_through_json_and_what_is_absent_stays_null) {
     const CellRecord full = cell(0, healthy());
     const Json::Value json = to_json(full);
-    EXPECT_EQ(json["health"]["gpu_mhz"]["mean"], 1965);
+    EXPECT_EQ(json["health"]["gpu_mhz"]["mean"].asDouble(), 1965);
     EXPECT_EQ(json["health"]["gpu_throttle"], Json::Value(Json::arrayValue));
     EXPECT_EQ(to_json(read_cell(json, "here")), json);
     const Json::Value bare = to_json(cell(0, {}));

@@ -46,7 +46,7 @@ ReportData arrange(const std::vector<results::ResultFolder>& folders) {
 }
 
 std::optional<double> figure(const results::CellGroup& group, const results::CellFigure& figure) {
-    return measure::median(results::numbers_of(group.good, figure));
+    return measure::median(results::numbers_of(group, figure));
 }
 
 bool any_has(const ResultSet& set, const results::CellFigure& figure) {
@@ -57,7 +57,7 @@ bool any_has(const ResultSet& set, const results::CellFigure& figure) {
 
 std::optional<measure::RunInterval> interval(const results::CellGroup& group, std::uint64_t seed,
                                              const results::CellFigure& figure) {
-    const std::vector<double> values = results::numbers_of(group.good, figure);
+    const std::vector<double> values = results::numbers_of(group, figure);
     if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
         return std::nullopt;
     }

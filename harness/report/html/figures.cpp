@@ -37,7 +37,7 @@ Table figure_table(const ResultSet& set, const char* id, const std::string& capt
         std::vector<Field>& row = table.rows.emplace_back();
         row.push_back(text_field(group.label));
         table.settings.push_back(setting_of(*group.cells.front()));
-        add_fields(row, columns, group.good);
+        add_fields(row, columns, group);
     }
     return table;
 }

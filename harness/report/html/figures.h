@@ -35,10 +35,9 @@ void add_columns(Table& table, const Columns& columns) {
     }
 }
 
-/// A field for each column, over `records`: the repetitions of a cell, or parts of them.
-template <typename Columns, typename Record>
-void add_fields(std::vector<Field>& row, const Columns& columns,
-                const std::vector<const Record*>& records) {
+/// A field for each column, over `records`: a group of cells, or repetitions, or parts of them.
+template <typename Columns, typename Records>
+void add_fields(std::vector<Field>& row, const Columns& columns, const Records& records) {
     for (const auto& column : columns) {
         const std::vector<double> values = results::numbers_of(records, column.figure);
         const auto value = values.empty() ? std::nullopt

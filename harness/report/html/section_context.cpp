@@ -56,6 +56,7 @@ std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
         }
     }
     std::ranges::copy(results::device_differences(folder.cells), std::back_inserter(texts));
+    std::ranges::copy(results::borrowed_truth(folder.cells), std::back_inserter(texts));
     return texts;
 }
 

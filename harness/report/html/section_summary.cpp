@@ -102,7 +102,7 @@ void add_summary(Page& page, const ReportData& data, const ResultSet& set) {
                           : Field{"-", ""});
         row.push_back(fps ? number_field(fps->low, 1) : Field{});
         row.push_back(fps ? number_field(fps->high, 1) : Field{});
-        add_fields(row, figures, group.good);
+        add_fields(row, figures, group);
         row.push_back(front.contains(i) ? Field{"●", "yes"} : Field{"", "no"});
     }
     if (!set.plotted) {
