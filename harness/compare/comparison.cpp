@@ -59,6 +59,13 @@ void note_other_scenarios(const Json::Value& base, const Json::Value& now,
     }
 }
 
+/// What disturbed the times of a run.
+void note_noise(const char* which, const Json::Value& run, std::vector<std::string>& notes) {
+    for (const Json::Value& words : run["noise"]) {
+        notes.push_back(fmt::format("{}: {}", which, words.asString()));
+    }
+}
+
 bool has_times(const results::ResultFolder& folder) {
     return std::ranges::any_of(
         folder.cells, [](const results::CellRecord& cell) { return cell.frame_ms.has_value(); });
@@ -175,7 +182,12 @@ Comparison compare_runs(const results::ResultFolder& base, const results::Result
     for (const Setting& setting : paired.missing) comparison.missing.push_back(setting.text());
     for (const Setting& setting : paired.added) comparison.added.push_back(setting.text());
     const std::string untimed = no_times(base, now);
-    if (!untimed.empty()) comparison.notes.push_back(untimed);
+    if (untimed.empty()) {
+        note_noise("BASE", base.run, comparison.notes);
+        note_noise("NEW", now.run, comparison.notes);
+    } else {
+        comparison.notes.push_back(untimed);
+    }
     for (const auto& [before, after] : paired.pairs) {
         SettingComparison setting = compare_setting(before, after, base, now);
         const bool compared = !before.good().empty() && !after.good().empty();

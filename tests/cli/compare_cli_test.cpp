@@ -113,7 +113,7 @@ TEST_F(CompareRuns, refuses_what_is_no_run_and_says_when_nothing_was_compared) {
     std::ofstream(base + "/cells.jsonl", std::ios::app) << "{\"cell\": 3}\n";
     const Finished damaged = lodbench({"compare", fly("steady", "other"), base});
     EXPECT_EQ(damaged.status, 2);
-    EXPECT_THAT(damaged.output, HasSubstr("cells.jsonl:2"));
+    EXPECT_THAT(damaged.output, HasSubstr("cells.jsonl:4"));
     const std::string other = path("template");
     ASSERT_EQ(lodbench({"run", tiny_scenario(folder_.path(), "").string(), "--method", "template",
                         "--out", other})

@@ -260,6 +260,32 @@ TEST_F(Run, statistics_of_a_cell_are_those_of_its_frames) {
     EXPECT_EQ(cell["triangles"]["min"].asDouble(), *std::ranges::min_element(triangles));
 }
 
+TEST_F(Run, tells_the_first_frame_of_all_and_when_a_cell_began) {
+    const std::string cell = "template__small__r0";
+    for (const bool warmed : {false, true}) {
+        const fs::path folder = out(warmed ? "warmed" : "cold");
+        const std::string frames = warmed ? "2" : "0";
+        ASSERT_EQ(
+            run(scenario(),
+                {"--method", "template", "--override", "flight.warmup_frames=" + frames}, folder)
+                .status,
+            0);
+        const Json::Value record = cells_of(folder).at(0);
+        const double first = record["first_frame_ms"].asDouble();
+        const std::vector<FrameRow> timed = frames_of(folder, cell);
+        if (warmed) {
+            // It compiles shaders, which takes many times what a frame does that nothing disturbs.
+            const auto by_time = [](const FrameRow& row) { return row.at("wall_ms"); };
+            EXPECT_GT(first, 2 * by_time(*std::ranges::min_element(timed, {}, by_time)));
+        } else {
+            EXPECT_NEAR(first, timed.at(0).at("wall_ms"), 1e-12 * first)
+                << "written with 15 digits";
+        }
+        EXPECT_THAT(record["began"].asString(),
+                    testing::MatchesRegex("[0-9]+-[0-9]+-[0-9]+T[0-9]+:[0-9]+:[0-9]+\\.[0-9]+Z"));
+    }
+}
+
 TEST_F(Run, one_seed_gives_the_same_order_counts_and_pictures_twice) {
     const fs::path file = scenario();
     const Arguments seeded = kThree + Arguments{"--seed", "5"};
