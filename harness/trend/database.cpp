@@ -224,8 +224,9 @@ Added Database::add(const RunEntry& run) {
 
 History Database::read() const {
     Transaction transaction(*connection_, Transaction::Kind::read);
-    if (is_new(*connection_)) return {};
-    return read_history(*connection_);
+    History history = is_new(*connection_) ? History{} : read_history(*connection_);
+    history.file = connection_->path().string();
+    return history;
 }
 
 }  // namespace lodbench::trend

@@ -37,6 +37,7 @@ struct FactsHistory {
 
 /// All that a database holds, as of one moment.
 struct History {
+    std::string file;           ///< for messages
     std::vector<RunHead> runs;  ///< in the order in which they began
     std::vector<SeriesName> series;
     std::vector<FigureHistory> figures;  ///< in order of series and name

@@ -33,13 +33,14 @@ void add_leaves(const Json::Value& value, const std::string& name, Leaves& leave
     }
 }
 
-Json::Value parse_object(const std::string& text, const char* what) {
-    Json::Value json = results::parse_json(text, what);
+Json::Value parse_object(const std::string& text, const History& history, const char* what) {
+    const std::string where = fmt::format("{}: {}", history.file, what);
+    Json::Value json = results::parse_json(text, where);
     if (!json.isObject()) {
         throw InputError(
             fmt::format("{}: expected an object; the history is damaged: make it anew "
                         "with `lodbench trend add` from the results folders",
-                        what));
+                        where));
     }
     return json;
 }
@@ -48,7 +49,7 @@ Json::Value parse_object(const std::string& text, const char* what) {
 Leaves leaves_of(const History& history, const std::vector<std::size_t>& texts) {
     Json::Value merged = Json::objectValue;
     for (const std::size_t text : texts) {
-        const Json::Value facts = parse_object(history.texts[text], "facts of a cell");
+        const Json::Value facts = parse_object(history.texts[text], history, "facts of a cell");
         for (const std::string& name : facts.getMemberNames()) {
             if (!merged.isMember(name)) merged[name] = facts[name];
         }
@@ -98,12 +99,13 @@ private:
     std::map<std::string, std::vector<Change>> changes_;
 };
 
-std::vector<std::string> labels_of(const std::vector<SeriesName>& series) {
+std::vector<std::string> labels_of(const History& history) {
+    const std::vector<SeriesName>& series = history.series;
     using Group = std::pair<std::string, std::string>;  // scenario and method
     std::map<Group, std::map<std::string, std::set<std::string>>> values;
     std::vector<Json::Value> params;
     for (const SeriesName& name : series) {
-        params.push_back(parse_object(name.params, "parameters of a series"));
+        params.push_back(parse_object(name.params, history, "parameters of a series"));
         for (const std::string& key : params.back().getMemberNames()) {
             values[{name.scenario, name.method}][key].insert(results::to_text(params.back()[key]));
         }
@@ -186,7 +188,7 @@ Trends find_trends(History history, const StepOptions& options) {
     Trends trends;
     trends.history = std::move(history);
     trends.options = options;
-    trends.labels = labels_of(trends.history.series);
+    trends.labels = labels_of(trends.history);
     const std::vector<FigureHistory>& figures = trends.history.figures;
     trends.figures.resize(figures.size());
     oneapi::tbb::parallel_for(std::size_t{0}, figures.size(), [&](std::size_t i) {

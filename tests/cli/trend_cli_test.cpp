@@ -6,6 +6,7 @@
 #include <sqlite3.h>
 #include <sys/prctl.h>
 
+#include <chrono>
 #include <random>
 
 #include "support/campaign_folders.h"
@@ -146,12 +147,17 @@ TEST_F(TrendCommand, that_is_killed_at_any_moment_leaves_runs_whole_or_out) {
     constexpr int kRuns = 40;
     std::vector<std::string> arguments = {"trend", "add", "--db", database().string()};
     for (int run = 0; run < kRuns; ++run) arguments.push_back(write_run(run).string());
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    ASSERT_EQ(run_lodbench(arguments, scratch_.path()).status, 0);
+    const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
+    fs::remove(database());
     std::mt19937 random(3);
     std::size_t before = 0;
-    std::size_t between = 0;
-    for (int i = 0; i < 40; ++i) {
+    int between = 0;
+    for (int kills = 0; kills < 200 && between < 12; ++kills) {
         const pid_t child = start_lodbench(arguments, scratch_.path() / "log");
-        usleep(useconds_t(random() % (i < 20 ? 30'000 : 200'000)));
+        usleep(useconds_t(random() % unsigned(whole.count())));
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
         if (!fs::exists(database())) continue;
@@ -159,12 +165,12 @@ TEST_F(TrendCommand, that_is_killed_at_any_moment_leaves_runs_whole_or_out) {
         EXPECT_GE(runs, before) << "a run that was in is lost";
         if (runs > before && runs < kRuns) ++between;
         before = runs;
-        if (runs == kRuns) {  // begin anew: kills belong into the middle
+        if (runs > kRuns / 2) {  // begin anew: kills belong into the middle
             fs::remove(database());
             before = 0;
         }
     }
-    EXPECT_GT(between, 3U) << "no kill came while runs were added";
+    EXPECT_EQ(between, 12) << "too few kills came while runs were added";
     ASSERT_EQ(run_lodbench(arguments, scratch_.path()).status, 0);
     EXPECT_EQ(whole_runs(), std::size_t(kRuns));
     EXPECT_EQ(show().status, 0);

@@ -44,6 +44,8 @@ TEST(TrendPage, has_the_commit_at_each_step_and_the_figures_before_and_after) {
     EXPECT_THAT(page, HasSubstr("data-value=\"123456\">123456</td>"));
     EXPECT_THAT(page, HasSubstr("data-value=\"123457\">123457</td>"));
     EXPECT_THAT(page, HasSubstr("data-value=\"+60 %\">+60 %</td>"));
+    EXPECT_THAT(page, HasSubstr("c000020: 5 → 8, +60 %"));
+    EXPECT_THAT(page, HasSubstr("c000030: 123456 → 123457, +0.00081 %"));
     EXPECT_THAT(page, HasSubstr("median between steps"));
     EXPECT_THAT(page, HasSubstr("default-src 'none'")) << "it fetches nothing";
 }

@@ -59,8 +59,16 @@ TEST(TrendScale, of_ten_thousand_runs_every_step_is_found) {
         scratch.path());
     const double whole = seconds() - added;
     ASSERT_EQ(shown.status, 0) << shown.output;
-    fmt::print("added {} runs in {:.1f} s, {:.1f} MB; `trend show` took {:.2f} s\n", kRuns, added,
-               double(fs::file_size(file)) / 1e6, whole);
+    rusage used{};
+    getrusage(RUSAGE_CHILDREN, &used);
+    const auto total = [](const timeval& time) {
+        return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
+    };
+    fmt::print(
+        "added {} runs in {:.1f} s, {:.1f} MB; `trend show` took {:.2f} s and {:.2f} s "
+        "of processors\n",
+        kRuns, added, double(fs::file_size(file)) / 1e6, whole,
+        total(used.ru_utime) + total(used.ru_stime));
     const Json::Value json =
         results::parse_json(test::text_of(scratch.path() / "out" / "trend.json"), "trend.json");
     ASSERT_EQ(json["series"].size(), Json::ArrayIndex(kCells));

@@ -20,6 +20,8 @@ constexpr double kRight = 470;
 constexpr double kTop = 10;
 constexpr double kBottom = 272;
 constexpr double kDot = 3.2;
+constexpr std::size_t kUsualLabel = 4;  // characters beside the field
+constexpr double kDigitWidth = 7.5;
 // Bars.
 constexpr double kBarLeft = 150;
 constexpr double kBarRight = 420;  // room for the value behind it
@@ -74,14 +76,22 @@ std::string x_axis(const Axis& axis, const std::string& title, double top, doubl
                              (left + right) / 2, bottom + 39, escape(title));
 }
 
-std::string y_axis(const Axis& axis, const std::string& title) {
+/// Where the field begins: long numbers need more room beside it.
+double left_of(const Axis& y, bool spanning) {
+    if (!spanning) return kLeft;
+    std::size_t longest = kUsualLabel;
+    for (const double tick : y.ticks()) longest = std::max(longest, y.tick_label(tick).size());
+    return kLeft + kDigitWidth * double(longest - kUsualLabel);
+}
+
+std::string y_axis(const Axis& axis, const std::string& title, double left) {
     std::string svg;
     for (const double tick : axis.ticks()) {
         const double y = axis.place(tick);
         svg += fmt::format(
             "<path class=\"grid\" d=\"M{} {:.1f}H{}\"/><text x=\"{}\" y=\"{:.1f}\" "
             "class=\"end\">{}</text>",
-            kLeft, y, kRight, kLeft - 6, y + 4, axis.tick_label(tick));
+            left, y, kRight, left - 6, y + 4, axis.tick_label(tick));
     }
     return svg + fmt::format(
                      "\n<text transform=\"translate(13 {:.1f}) rotate(-90)\" class=\"mid "
@@ -155,11 +165,12 @@ Drawing draw_curves(const Plot& plot) {
         }
     }
     const Axis::Scale scale = scale_of(plot);
-    const Axis x(xs, plot.counts ? Axis::Scale::counting : scale, kLeft, kRight);
     const bool spanning = !plot.from_zero && scale != Axis::Scale::logarithmic;
     const Axis y(ys, spanning ? Axis::Scale::spanning : scale, kBottom, kTop);
+    const double left = left_of(y, spanning);
+    const Axis x(xs, plot.counts ? Axis::Scale::counting : scale, left, kRight);
     std::string svg =
-        x_axis(x, plot.x_title, kTop, kBottom, kLeft, kRight) + y_axis(y, plot.y_title);
+        x_axis(x, plot.x_title, kTop, kBottom, left, kRight) + y_axis(y, plot.y_title, left);
     for (const Series& series : plot.series) svg += series_svg(series, x, y);
     return {kWidth, kHeight, svg,
             fmt::format(" data-x=\"{}\" data-y=\"{}\"", x.numbers(), y.numbers())};

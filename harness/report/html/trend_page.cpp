@@ -23,6 +23,7 @@ using trend::Trends;
 
 constexpr std::size_t kMostPlots = 60;
 constexpr std::size_t kMostDottedRuns = 60;
+constexpr std::size_t kMostStepNotes = 6;  ///< below one plot
 constexpr std::size_t kCommitLength = 12;
 /// Of each series, what is plotted though it does not step.
 constexpr const char* kMainFigures[] = {"frame_ms.median", "triangles.mean", "pixel_error_px.p999"};
@@ -220,8 +221,27 @@ private:
         plot.from_zero = times_.contains({first, subject.figure});
         if (!plot.from_zero) plot.notes.emplace_back("The axis spans the values alone.");
         if (has_several_flights(trends_)) plot.notes.push_back(series(first).flight);
+        add_step_notes(plot, subject);
         for (const std::size_t i : subject.series) add_curves(plot, i, subject.figure);
         return plot;
+    }
+
+    /// The figures before and after, newest step first.
+    void add_step_notes(Plot& plot, const Subject& subject) const {
+        std::size_t steps = 0;
+        for (const StepRow& row : rows_) {
+            if (row.figure != subject.figure ||
+                std::ranges::find(subject.series, row.series) == subject.series.end() ||
+                ++steps > kMostStepNotes) {
+                continue;
+            }
+            plot.notes.push_back(fmt::format("{}: {} → {}{}", commit_text(run(row.run)), row.before,
+                                             row.after,
+                                             row.change.empty() ? "" : ", " + row.change));
+        }
+        if (steps > kMostStepNotes) {
+            plot.notes.push_back(fmt::format("and {} earlier steps", steps - kMostStepNotes));
+        }
     }
 
     void add_curves(Plot& plot, std::size_t i, const std::string& figure) {
