@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/printable.h"
 #include "report/table.h"
 #include "results/json.h"
 
@@ -19,7 +20,7 @@ constexpr std::size_t kMostRows = 60;  // of the Markdown
 
 std::string exact_text(const Json::Value& value) {
     if (value.type() == Json::realValue) return fmt::format("{}", value.asDouble());
-    return value.isString() ? value.asString() : results::to_text(value);
+    return base::bounded(value.isString() ? value.asString() : results::to_text(value));
 }
 
 /// Four digits, or whole where that is more: bytes.

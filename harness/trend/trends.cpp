@@ -22,14 +22,19 @@ constexpr double kManyOfRuns = 0.25;
 
 using Leaves = std::map<std::string, Json::Value>;
 
-/// Lists are one leaf each: which of their entries is new says little.
+/// Entries of lists by their places: "economy.0.p999.ratio".
 void add_leaves(const Json::Value& value, const std::string& name, Leaves& leaves) {
-    if (!value.isObject()) {
-        if (!value.isNull()) leaves[name] = value;
-        return;
-    }
-    for (auto member = value.begin(); member != value.end(); ++member) {
-        add_leaves(*member, name.empty() ? member.name() : name + "." + member.name(), leaves);
+    const std::string prefix = name.empty() ? name : name + ".";
+    if (value.isArray()) {
+        for (Json::ArrayIndex i = 0; i < value.size(); ++i) {
+            add_leaves(value[i], fmt::format("{}{}", prefix, i), leaves);
+        }
+    } else if (value.isObject()) {
+        for (auto member = value.begin(); member != value.end(); ++member) {
+            add_leaves(*member, prefix + member.name(), leaves);
+        }
+    } else if (!value.isNull()) {
+        leaves[name] = value;
     }
 }
 

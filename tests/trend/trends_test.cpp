@@ -58,6 +58,16 @@ TEST_F(TrendsOfHistory, do_not_tell_what_is_measured_for_the_first_time_or_is_mi
     ASSERT_EQ(trends().changes.size(), 1U) << "what was known before the gap is not forgotten";
 }
 
+TEST_F(TrendsOfHistory, tell_of_a_list_which_entry_is_another) {
+    for (int run = 0; run < 2; ++run) {
+        add(run, {fake_cell("m", 5,
+                            fmt::format(R"({{"economy":[{{"ratio":2}},{{"ratio":{}}}]}})", run))});
+    }
+    const Trends found = trends();
+    ASSERT_EQ(found.changes.size(), 1U);
+    EXPECT_EQ(found.changes[0].field, "economy.1.ratio");
+}
+
 TEST_F(TrendsOfHistory, take_the_truth_from_the_repetition_that_has_it) {
     for (int run = 0; run < 2; ++run) {
         add(run, {fake_cell("m", 5, R"({"triangles":7,"error":1})", 0),
