@@ -174,15 +174,13 @@ const Theme kThemes[] = {
 /// Fields of a cell that say how fast the machine was, or that follow from the seed that the plan
 /// gave the cell: the hash is of a frame that the seed chooses.
 bool is_of_the_moment(const std::string& field) {
-    static const std::set<std::string> kFields = {"cell_s",         "fps",
-                                                  "jank_ms",        "frame_ms",
-                                                  "select_ms",      "submit_ms",
-                                                  "gpu_ms",         "cpu_ms",
-                                                  "prepare_s",      "prepare_cpu_s",
-                                                  "upload_s",       "first_frame_ms",
-                                                  "peak_rss_bytes", "frames_checksum",
-                                                  "timer_verdict",  "seed",
-                                                  "depth_hash"};
+    static const std::set<std::string> kFields = {
+        "began",          "cell_s",         "fps",
+        "jank_ms",        "frame_ms",       "select_ms",
+        "submit_ms",      "gpu_ms",         "cpu_ms",
+        "prepare_s",      "prepare_cpu_s",  "upload_s",
+        "first_frame_ms", "peak_rss_bytes", "frames_checksum",
+        "timer_verdict",  "seed",           "depth_hash"};
     return kFields.contains(field);
 }
 
