@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
     int status = 0;
     using namespace lodbench::cli;
     for (const auto add :
-         {add_list, add_describe, add_run, add_sweep, add_match, add_economy, add_plan, add_merge,
+         {add_list, add_describe, add_run, add_sweep, add_match, add_economy, add_reproduce, add_plan, add_merge,
           add_report, add_cell, add_mesh, add_terrain, add_new_method, add_validate}) {
         add(app, status);
     }
