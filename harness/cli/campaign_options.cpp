@@ -43,17 +43,13 @@ std::string shell_word(const std::string& word) {
     return quoted + "'";
 }
 
-/// Of a run or a search: a finished cell is a line, a torn one is none.
+/// Of a run, a search or several of them: a finished cell is a line, a torn one is none.
 std::ptrdiff_t finished_cells(const std::filesystem::path& out) {
     std::ptrdiff_t count = 0;
-    const auto add = [&count](const std::filesystem::path& folder) {
-        const std::filesystem::path file = folder / "cells.jsonl";
-        if (std::filesystem::exists(file)) count += std::ranges::count(base::read_text(file), '\n');
-    };
-    add(out);
     std::error_code none;
-    for (const auto& probe : std::filesystem::directory_iterator(out / "search", none)) {
-        add(probe.path());
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(out, none)) {
+        if (entry.path().filename() != "cells.jsonl") continue;
+        count += std::ranges::count(base::read_text(entry.path()), '\n');
     }
     return count;
 }
@@ -80,9 +76,13 @@ void CampaignOptions::add_request(CLI::App& command) {
                  "method to fly; none: as the scenario says");
     add_repeated(command, "--set", request.settings,
                  "[METHOD.]PARAM=VALUE[,VALUE...]; several values are swept");
+    seed_option_ = add_seed(command, seed_, "seed of the order and of random choices");
+    add_manner(command);
+}
+
+void CampaignOptions::add_manner(CLI::App& command) {
     add_plugin_dirs(command, request.plugin_dirs);
     add_overrides(command, request.overrides);
-    seed_option_ = add_seed(command, seed_, "seed of the order and of random choices");
     add_override(command, request.overrides, "--repeat", "run.repetitions",
                  "repetitions of each cell")
         ->check(CLI::Range(1, 1000));
@@ -103,6 +103,10 @@ void CampaignOptions::add_request(CLI::App& command) {
 
 void CampaignOptions::add_to(CLI::App& command) {
     add_request(command);
+    add_output(command);
+}
+
+void CampaignOptions::add_output(CLI::App& command) {
     out_option_ = command.add_option(
         "--out,-o", request.out,
         "results folder; default lodbench-results/<UTC date-time>, with -2, -3 ... "
@@ -145,7 +149,7 @@ void CampaignOptions::name_settings() {
 
 void CampaignOptions::finish_request() {
     name_settings();
-    if (!*seed_option_) return;
+    if (seed_option_ == nullptr || !*seed_option_) return;
     request.overrides.set("run.seed", fmt::format("{}", seed_), fmt::format("--seed {}", seed_));
 }
 

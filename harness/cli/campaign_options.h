@@ -26,9 +26,13 @@ public:
     ~CampaignOptions();
 
     /// Adds --method, --set, --plugin-dir, --frames, --size, --override, --seed, --repeat,
-    /// --device and --cool-down: what is flown.
+    /// --device and --cool-down: what is flown, and how.
     void add_request(CLI::App& command);
-    /// And --out and --json.
+    /// Of these --plugin-dir, --frames, --size, --override, --repeat and --device: how it is flown.
+    void add_manner(CLI::App& command);
+    /// --out and --json.
+    void add_output(CLI::App& command);
+    /// All of them.
     void add_to(CLI::App& command);
     /// Adds --resume, for commands that can go on with what they began.
     void add_resume(CLI::App& command, const char* help);

@@ -13,6 +13,7 @@
 #include "base/files.h"
 #include "cli/campaign_options.h"
 #include "cli/commands.h"
+#include "cli/search_progress.h"
 #include "cli/trade_options.h"
 #include "measure/statistics.h"
 #include "report/aligned_table.h"
@@ -61,35 +62,6 @@ results::MatchTarget read_target(const Options& options) {
 std::string number_text(const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : "-";
 }
-
-/// ", at most 1:23 of searching left"; nothing before a probe was flown.
-std::string most_left(const run::SearchPlace& place) {
-    if (!place.most_left_s) return {};
-    return fmt::format(", at most {} of searching left", minutes_text(*place.most_left_s));
-}
-
-/// A probe is a line when it is measured; on a terminal one is redrawn while it flies.
-class SearchProgress final : public run::SearchObserver {
-public:
-    explicit SearchProgress(Progress& progress) : progress_(progress) {}
-    void flying(const run::SearchPlace& place) override {
-        progress_.redraw(fmt::format("{} {:.0f} %{}", place_text(place), 100 * place.fraction,
-                                     most_left(place)));
-    }
-    void probed(const run::SearchPlace& place, const run::MatchedMethod& method,
-                const run::Probe& probe, const std::string& failure) override {
-        progress_.line(fmt::format(
-            "{} {} = {:.6g} gives {}{}", place_text(place), method.knob->name, probe.knob,
-            failure.empty() ? number_text(probe.value) : failure, most_left(place)));
-    }
-
-private:
-    static std::string place_text(const run::SearchPlace& place) {
-        return fmt::format("[{}/{}] {}: probe {} of at most {}:", place.method_number,
-                           place.method_count, place.method, place.probe, place.most_probes);
-    }
-    Progress& progress_;
-};
 
 /// What the outcomes that are no "met" mean, of those that occur.
 std::string outcome_remarks(const std::vector<run::MatchedMethod>& methods) {

@@ -22,6 +22,9 @@ struct Field {
     const char* meaning;
     bool required = false;  ///< what lacks it is refused; else what is absent was not measured
 };
+// Clang deduces this of an aggregate from version 17 on.
+template <typename Owner, typename T>
+Field(const char*, T Owner::*, const char*, const char*, bool = false) -> Field<Owner, T>;
 
 /// Specialised for each record: `static constexpr std::tuple fields{Field{...}, ...};`
 template <typename Record>

@@ -230,6 +230,12 @@ std::optional<std::vector<int>> Section::integers(std::string_view key, int mini
     return values;
 }
 
+std::string Section::title_of(std::string_view key) const {
+    std::string outer = title_;
+    std::erase_if(outer, [](char c) { return c == '[' || c == ']'; });
+    return fmt::format("[{}{}{}]", outer, outer.empty() ? "" : ".", key);
+}
+
 std::optional<Section> Section::section(std::string_view key) {
     const toml::node* found = node(key);
     if (found == nullptr) return std::nullopt;
@@ -240,15 +246,13 @@ std::optional<Section> Section::section(std::string_view key) {
                                 "keys below",
                                 kind_of(*found), key));
     }
-    const std::string outer = title_.empty() ? "" : title_.substr(1, title_.size() - 2) + ".";
-    return Section(*inner, file_, fmt::format("[{}{}]", outer, key));
+    return Section(*inner, file_, title_of(key));
 }
 
 std::vector<Section> Section::sections(std::string_view key) {
     const toml::node* found = node(key);
     if (found == nullptr) return {};
-    const std::string outer = title_.empty() ? "" : title_.substr(1, title_.size() - 2) + ".";
-    const std::string title = fmt::format("[[{}{}]]", outer, key);
+    const std::string title = fmt::format("[{}]", title_of(key));
     const toml::array* array = found->as_array();
     if (array == nullptr || array->empty()) {
         refuse_node(key, *found, fmt::format("write one or more tables {}", title));
@@ -267,7 +271,7 @@ std::string Section::known_names(std::string_view given, const std::vector<std::
                        fmt::join(known, ", "));
 }
 
-void Section::refuse_unknown() const {
+void Section::refuse_unknown(std::string_view of) const {
     // In the order of the file, so that the first mistake is the one that is told.
     const toml::key* first = nullptr;
     const toml::node* named = nullptr;
@@ -278,9 +282,9 @@ void Section::refuse_unknown() const {
         named = &value;
     }
     if (first == nullptr) return;
-    throw InputError(fmt::format("{}: {}{}{} is not a key of a scenario; {}",
+    throw InputError(fmt::format("{}: {}{}{} is not a key of {}; {}",
                                  terrain::toml_place(*named, file_), title_,
-                                 title_.empty() ? "" : " ", base::printable(first->str()),
+                                 title_.empty() ? "" : " ", base::printable(first->str()), of,
                                  known_names(first->str(), asked_)));
 }
 

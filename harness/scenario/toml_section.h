@@ -1,5 +1,5 @@
 #pragma once
-// One table of a scenario, read key by key: what is not asked for is unknown, and every refusal
+// One table of a file in TOML, read key by key: what is not asked for is unknown, and every refusal
 // names file, line, key, value and remedy. Include from .cpp files only: toml++ is heavy.
 
 #include <toml++/toml.h>
@@ -63,10 +63,13 @@ public:
     [[nodiscard]] static std::string known_names(std::string_view given,
                                                  const std::vector<std::string>& known);
 
-    /// Throws InputError for the first key that nobody asked for, with the keys that were.
-    void refuse_unknown() const;
+    /// Throws InputError for the first key that nobody asked for, with the keys that were. `of`
+    /// is what kind of file it is.
+    void refuse_unknown(std::string_view of = "a scenario") const;
 
 private:
+    /// "[terrain.upsample]" of a table in `[terrain]` or `[[terrain]]`.
+    [[nodiscard]] std::string title_of(std::string_view key) const;
     [[noreturn]] void refuse_node(std::string_view key, const toml::node& node,
                                   const std::string& message) const;
 

@@ -1,0 +1,44 @@
+#pragma once
+// What was flown for a paper, asked for figures of selected cells.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "reproduce/paper.h"
+#include "results/cell.h"
+
+namespace lodbench::reproduce {
+
+/// The results of one experiment.
+struct FlownExperiment {
+    std::vector<results::CellRecord> cells;
+    bool software = false;              ///< by a software rasteriser
+    std::string device;                 ///< "" where nothing came so far
+    std::string failure;                ///< why nothing was flown; "" where something was
+    std::vector<std::string> terrains;  ///< in words
+    /// Methods that say nothing, and why: not here, or not what they were to be equal at.
+    std::map<std::string, std::string> unusable;
+};
+
+/// A figure of one setting over its repetitions.
+struct Measured {
+    std::optional<Interval> value;
+    std::string why_not;  ///< why there is no value, or why nothing can be decided by it
+};
+
+class Evidence {
+public:
+    std::map<std::string, FlownExperiment> experiments;  ///< by id
+
+    /// From five repetitions on the bootstrap interval of the median, below that the range. No
+    /// value where a cell of the setting is missing or failed, and where the figure was not
+    /// measured. A time that was measured once has a value and a reason: nothing is known of its
+    /// noise. Throws InputError, beginning with `where`, for a selection that names no experiment,
+    /// that is met by several settings, or by none although its method was flown.
+    [[nodiscard]] Measured measure(const Figure& figure, const Selection& selection,
+                                   const std::string& where) const;
+    [[nodiscard]] bool any_in_software() const;
+};
+
+}  // namespace lodbench::reproduce
