@@ -61,8 +61,9 @@ float edge_factor(ivec2 corner, ivec2 along) {
     if (edge_length == 1) {
         factor = factor_for_length(block_vertex(from, vec2(0.0)), block_vertex(from, vec2(along)));
     } else {
+        int eastward = (block_count.y + 1) * block_count.x;
         int edge = along.x == 1 ? corner.y * block_count.x + corner.x
-                                : (block_count.y + 1) * block_count.x + corner.y * (block_count.x + 1) + corner.x;
+                                : eastward + corner.y * (block_count.x + 1) + corner.x;
         float reach = 0.5 * float(block_cells) * dot(sample_spacing.xy, vec2(along));
         factor = factor_for_error(32 * edge, allowed_error(block_vertex(from, 0.5 * vec2(along)), reach));
     }

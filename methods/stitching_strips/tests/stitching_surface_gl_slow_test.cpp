@@ -1,5 +1,6 @@
 // Hundreds of cameras, thresholds of 0.5 to 8 pixels: no hole, no overlap.
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
@@ -39,9 +40,12 @@ TEST_P(WholeSurfaces, of_100_cameras_over_a_terrain_of_ones_own) {
                           13);
 }
 
-INSTANTIATE_TEST_SUITE_P(methods, WholeSurfaces, testing::Values("dss", "tess-pow2"),
+INSTANTIATE_TEST_SUITE_P(methods, WholeSurfaces,
+                         testing::Values("dss", "tess-pow2", "tess-uniform"),
                          [](const auto& chosen) {
-                             return std::string(chosen.param) == "dss" ? "dss" : "tess_pow2";
+                             std::string name = chosen.param;
+                             std::ranges::replace(name, '-', '_');
+                             return name;
                          });
 
 }  // namespace
