@@ -40,7 +40,7 @@ public:
     struct Setup {
         FindGpu find_gpu;
         CpuSensors cpu;
-        std::chrono::milliseconds interval{1000};  ///< between samples
+        std::chrono::milliseconds interval{1000};   ///< between samples
         std::chrono::milliseconds patience{10000};  ///< with sensors that do not answer
         /// The sensors of this machine, as SensorPlaces::from_environment has them.
         [[nodiscard]] static Setup of_this_machine();
