@@ -70,13 +70,13 @@ void require_one_setting(const Cells& cells, const Selection& selection, const s
                                  fmt::join(settings, "; ")));
 }
 
-std::string why_not_measured(const Figure& figure, const results::CellRecord& cell) {
+std::string why_not_measured(const Figure& figure, const CellWithFrames& cell) {
     for (const Figure::Factor& factor : figure.factors) {
-        if (factor.field.read(cell)) continue;
-        if (factor.field.name.starts_with("gpu_ms.")) {
-            return fmt::format("no GPU time: {}", cell.timer_verdict);
+        if (factor.read(cell)) continue;
+        if (factor.name.starts_with("gpu_ms.")) {
+            return fmt::format("no GPU time: {}", cell.cell->timer_verdict);
         }
-        return fmt::format("{} was not measured", factor.field.name);
+        return fmt::format("{} was not measured", factor.name);
     }
     return fmt::format("{} divides by 0", figure.text);
 }
@@ -109,11 +109,16 @@ Measured Evidence::measure(const Figure& figure, const Selection& selection,
                 fmt::format("{} {}: {}", cell->cell, name_of(cell->status), cell->reason)};
     }
     std::vector<double> values;
+    const auto with_frames = [&](const results::CellRecord* cell) {
+        const auto frames = found->second.frames.find(cell->cell);
+        return CellWithFrames{cell,
+                              frames == found->second.frames.end() ? nullptr : &frames->second};
+    };
     for (const results::CellRecord* cell : cells) {
-        if (const auto value = figure.of(*cell)) values.push_back(*value);
+        if (const auto value = figure.of(with_frames(cell))) values.push_back(*value);
     }
     const auto runs = measure::run_interval(values, 1);
-    if (!runs) return {std::nullopt, why_not_measured(figure, *cells.front())};
+    if (!runs) return {std::nullopt, why_not_measured(figure, with_frames(cells.front()))};
     Measured measured{Interval{runs->centre, runs->low, runs->high}, {}};
     if (figure.is_time() && values.size() < 2) {
         measured.why_not = "a time that was measured once: repeat it to know its noise";

@@ -13,8 +13,9 @@ namespace lodbench::reproduce {
 /// The results of one experiment.
 struct FlownExperiment {
     std::vector<results::CellRecord> cells;
-    bool software = false;              ///< by a software rasteriser
-    std::string device;                 ///< "" where nothing came so far
+    std::map<std::string, results::FrameTable> frames;  ///< by cell, of those that are ok
+    bool software = false;                              ///< by a software rasteriser
+    std::string device;                                 ///< "" where nothing came so far
     std::string failure;                ///< why nothing was flown; "" where something was
     std::vector<std::string> terrains;  ///< in words
     /// Methods that say nothing, and why: not here, or not what they were to be equal at.

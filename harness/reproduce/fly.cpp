@@ -7,6 +7,7 @@
 
 #include "api/error.h"
 #include "base/files.h"
+#include "results/folder.h"
 #include "results/json.h"
 
 namespace lodbench::reproduce {
@@ -174,6 +175,7 @@ FlownExperiment fly(const PlannedExperiment& planned, const fs::path& program,
     const Json::Value& software = results::member_of(campaign.run, "gl", "software");
     flown.software = software.isBool() && software.asBool();
     flown.cells = campaign.cells;
+    flown.frames = results::read_result_folder(campaign.out).frames;
     for (const results::CellRecord& cell : flown.cells) {
         if (!cell.device.empty()) flown.device = cell.device;
     }

@@ -30,10 +30,10 @@ std::string Selection::words() const {
     return text;
 }
 
-std::optional<double> Figure::of(const results::CellRecord& cell) const {
+std::optional<double> Figure::of(const CellWithFrames& cell) const {
     double product = 1;
     for (const Factor& factor : factors) {
-        const auto value = factor.field.read(cell);
+        const auto value = factor.read(cell);
         if (!value || (factor.divides && *value == 0)) return std::nullopt;
         product = factor.divides ? product / *value : product * *value;
     }
@@ -41,8 +41,7 @@ std::optional<double> Figure::of(const results::CellRecord& cell) const {
 }
 
 bool Figure::is_time() const {
-    return std::ranges::any_of(factors,
-                               [](const Factor& factor) { return factor.field.is_time(); });
+    return std::ranges::any_of(factors, &Factor::is_time);
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> Table::baseline_of(std::size_t row,

@@ -3,6 +3,7 @@
 // scenarios/README.md lists every key.
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "reproduce/interval.h"
+#include "results/folder.h"
 #include "results/match.h"
 #include "results/number_fields.h"
 #include "scenario/scenario.h"
@@ -28,17 +30,25 @@ struct Selection {
     [[nodiscard]] std::string words() const;
 };
 
+/// A cell, and its frames where they are kept.
+struct CellWithFrames {
+    const results::CellRecord* cell = nullptr;
+    const results::FrameTable* frames = nullptr;
+};
+
 /// A figure of a cell: one field, or a product and quotient of several, "fps * triangles.mean".
 struct Figure {
     struct Factor {
-        results::NumberField field;
+        std::string name;
+        bool is_time = false;
         bool divides = false;
+        std::function<std::optional<double>(const CellWithFrames&)> read;
     };
     std::string text;
     std::vector<Factor> factors;
 
     /// Nothing where one of the fields was not measured.
-    [[nodiscard]] std::optional<double> of(const results::CellRecord& cell) const;
+    [[nodiscard]] std::optional<double> of(const CellWithFrames& cell) const;
     [[nodiscard]] bool is_time() const;
 };
 
@@ -159,7 +169,9 @@ struct Paper {
 /// field of a cell, an experiment or a table that is not there, and a key that is not known.
 [[nodiscard]] Paper read_paper(const std::filesystem::path& file);
 
-/// "fps * triangles.mean / frames". Throws InputError that begins with `where`.
+/// "fps * triangles.mean / frames". "frames.triangles@0.5" is of the frame halfway along the
+/// flight, by the columns of its CSV that are kept (results/folder.h). Throws InputError that
+/// begins with `where`.
 [[nodiscard]] Figure parse_figure(const std::string& text, const std::string& where);
 
 }  // namespace lodbench::reproduce

@@ -193,6 +193,27 @@ TEST(Judge, constant_monotone_and_rank) {
               Outcome::fails);
 }
 
+TEST(Judge, figures_of_a_frame_are_found_by_its_part_of_the_flight) {
+    FlownExperiment experiment = flown();
+    for (const CellRecord& record : experiment.cells) {
+        experiment.frames[record.cell].columns["triangles"] = {500, 400, 300, 200, 100};
+    }
+    const auto outcome = [&](const std::string& part, int value) {
+        return judged(claim(fmt::format("kind = \"bound\"\nof = {{ field = "
+                                        "\"frames.triangles@{}\", tau = 1 }}\nleast = "
+                                        "{}\nmost = {}\n",
+                                        part, value, value)),
+                      experiment)
+            .outcome;
+    };
+    EXPECT_EQ(outcome("0", 500), Outcome::holds);
+    EXPECT_EQ(outcome("0.5", 300), Outcome::holds);
+    EXPECT_EQ(outcome("1", 100), Outcome::holds);
+    EXPECT_EQ(outcome("1", 200), Outcome::fails);
+    experiment.frames.clear();
+    EXPECT_EQ(outcome("0", 500), Outcome::unjudged);
+}
+
 TEST(Judge, readings_that_differ_are_told_apart) {
     const std::string readings = R"([[claim.reading]]
 name = "coarse"
