@@ -18,7 +18,11 @@ class OutOfCore : public testing::Test {
 protected:
     Finished run(const Arguments& arguments) {
         return run_lodbench(arguments, folder_.path(), [this] {
+            // All three are looked into: what an earlier run of the user's left is none of ours.
             setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);
+            for (const char* variable : {"HOME", "TMPDIR"}) {
+                setenv(variable, folder_.path().c_str(), 1);
+            }
         });
     }
     [[nodiscard]] std::string file(const char* name) const { return folder_.path() / name; }
