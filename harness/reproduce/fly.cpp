@@ -56,7 +56,7 @@ std::string terrain_words(const terrain::TerrainSource& source, bool own, const 
         words += fmt::format(", upsampled by {}, with fractal detail of {} m (seed {})",
                              upsampling->factor, upsampling->fractal_amplitude, upsampling->seed);
     }
-    return fmt::format("{}{} the paper's {}", words, own ? ", which is" : " stands for",
+    return fmt::format("{}, {} the paper's: {}", words, own ? "which is" : "in the place of",
                        paper.terrain.name);
 }
 

@@ -61,9 +61,14 @@ std::vector<double> centres(std::span<const Interval> intervals) {
 
 }  // namespace
 
+std::string number_text(double value) {
+    const bool whole = std::isfinite(value) && std::abs(value) >= 1e4 && std::abs(value) < 1e12;
+    return whole ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+}
+
 std::string Interval::text() const {
-    if (is_exact()) return fmt::format("{:.4g}", centre);
-    return fmt::format("{:.4g} [{:.4g}, {:.4g}]", centre, low, high);
+    if (is_exact()) return number_text(centre);
+    return fmt::format("{} [{}, {}]", number_text(centre), number_text(low), number_text(high));
 }
 
 std::optional<Interval> ratio(const Interval& a, const Interval& b) {
@@ -118,10 +123,10 @@ Answer Range::holds(const Interval& value) const {
 
 std::string Range::text() const {
     std::vector<std::string> parts;
-    if (least) parts.push_back(fmt::format(">= {:.4g}", *least));
-    if (above) parts.push_back(fmt::format("> {:.4g}", *above));
-    if (most) parts.push_back(fmt::format("<= {:.4g}", *most));
-    if (below) parts.push_back(fmt::format("< {:.4g}", *below));
+    if (least) parts.push_back(">= " + number_text(*least));
+    if (above) parts.push_back("> " + number_text(*above));
+    if (most) parts.push_back("<= " + number_text(*most));
+    if (below) parts.push_back("< " + number_text(*below));
     return fmt::format("{}", fmt::join(parts, " and "));
 }
 

@@ -7,6 +7,9 @@
 
 namespace lodbench::reproduce {
 
+/// Four digits, and all that stand before the point: "1.234", "1198080".
+[[nodiscard]] std::string number_text(double value);
+
 /// What is known of a figure: `low` <= `centre` <= `high`; infinite where it was measured so.
 struct Interval {
     double centre = 0, low = 0, high = 0;

@@ -52,7 +52,7 @@ std::string evidence_text(const Verdict& verdict) {
 
 std::string published_text(const TableCell& cell) {
     if (!cell.published) return "-";
-    const std::string value = fmt::format("{:g}", *cell.published);
+    const std::string value = number_text(*cell.published);
     return cell.published_ratio ? fmt::format("{} ({:.3g})", value, *cell.published_ratio) : value;
 }
 

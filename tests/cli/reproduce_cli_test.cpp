@@ -74,7 +74,7 @@ TEST(Reproduce, flies_judges_and_writes) {
     EXPECT_THAT(text_of(out / "reproduce.md"), HasSubstr("there is no method nowhere here"));
     EXPECT_THAT(
         text_of(out / "reproduce.md"),
-        HasSubstr("Terrain: synthetic ramp, 17 x 17 samples stands for the paper's a ramp"));
+        HasSubstr("Terrain: synthetic ramp, 17 x 17 samples, in the place of the paper's: a ramp"));
     EXPECT_THAT(text_of(out / "reproduce.html"), HasSubstr("</html>"));
     EXPECT_TRUE(fs::exists(out / "paper" / "flight" / "cells.jsonl"));
 }

@@ -44,6 +44,12 @@ TEST(Interval, a_range_holds_only_where_all_of_the_interval_does) {
     EXPECT_EQ(range.text(), ">= 1 and < 2");
 }
 
+TEST(Interval, digits_before_the_point_are_never_left_out) {
+    EXPECT_EQ(Interval::exactly(1198080).text(), "1198080");
+    EXPECT_EQ((Interval{1.23456, 1.2, 12345.6}).text(), "1.235 [1.2, 12346]");
+    EXPECT_EQ(Interval::exactly(kInfinity).text(), "inf");
+}
+
 TEST(Interval, the_ends_belong_to_a_range_or_not) {
     Range within, beyond;
     within.most = 1;
