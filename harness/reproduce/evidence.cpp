@@ -24,10 +24,15 @@ std::optional<double> number_of(const std::string& text) {
     return whole ? std::optional(value) : std::nullopt;
 }
 
-/// 0.5 and 5e-1 are one value; texts are as they are.
+/// 0.5 and 5e-1 are one value, and so is what cells.jsonl cuts after 15 digits; texts are as they
+/// are.
+std::string plain_value(const std::string& text) {
+    const auto number = number_of(text);
+    return number ? fmt::format("{:.12g}", *number) : text;
+}
+
 bool same_value(const std::string& a, const std::string& b) {
-    const auto x = number_of(a), y = number_of(b);
-    return x && y ? *x == *y : a == b;
+    return plain_value(a) == plain_value(b);
 }
 
 bool is_selected(const results::CellRecord& cell, const Selection& selection) {
@@ -42,7 +47,7 @@ bool is_selected(const results::CellRecord& cell, const Selection& selection) {
 std::string setting_text(const results::CellRecord& cell) {
     std::string text = cell.method + ", " + cell.scenario;
     for (const auto& [name, value] : cell.params.values()) {
-        text += fmt::format(", {}={}", name, results::value_text(value));
+        text += fmt::format(", {}={}", name, plain_value(results::value_text(value)));
     }
     return text;
 }

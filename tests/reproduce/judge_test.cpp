@@ -281,6 +281,17 @@ TEST(Judge, published_times_stand_beside_ratios_alone) {
     EXPECT_THAT(shown.text, testing::Not(HasSubstr("238")));
 }
 
+// Of a campaign that was resumed some cells are read back from cells.jsonl, which has 15 digits.
+TEST(Judge, a_third_is_one_setting_read_back_or_not) {
+    FlownExperiment experiment;
+    experiment.cells = {cell(1.0 / 3, 0, 1, 10), cell(0.333333333333333, 1, 1, 10)};
+    EXPECT_EQ(judged(claim("kind = \"bound\"\nof = { field = \"triangles.mean\", tau = "
+                           "0.3333333333333333 }\nmost = 10\n"),
+                     experiment)
+                  .outcome,
+              Outcome::holds);
+}
+
 TEST(Judge, selections_that_are_wrong_are_told_by_line) {
     const auto refusal = [](const std::string& test) -> std::string {
         try {
