@@ -179,6 +179,7 @@ constexpr lodbench::MethodDescriptor with(const char* id, const lodbench::ParamS
     descriptor.params = params;
     descriptor.param_count = count;
     descriptor.quality_knob = knob;
+    descriptor.capabilities = lodbench::kExample;  // what flies all methods leaves them out
     return descriptor;
 }
 constexpr lodbench::MethodDescriptor streaming(lodbench::MethodDescriptor descriptor) {
