@@ -261,9 +261,8 @@ Json::Value to_json(const run::CampaignOutcome& outcome) {
     Json::Value object;
     object["out"] = outcome.out.string();
     object["exit_status"] = outcome.exit_status();
-    object["error"] = outcome.error.empty() ? Json::Value::null : Json::Value(outcome.error);
-    object["warnings"] = Json::arrayValue;
-    for (const std::string& warning : outcome.warnings) object["warnings"].append(warning);
+    object["error"] = results::text_or_null(outcome.error);
+    object["warnings"] = results::array_of(outcome.warnings);
     object["cells"] = Json::arrayValue;
     for (const auto& cell : outcome.cells) object["cells"].append(results::to_json(cell));
     return object;

@@ -35,11 +35,8 @@ struct Options {
 };
 
 results::ResultFolder read_folder(const fs::path& path) {
-    std::error_code error;
-    if (fs::is_directory(path, error)) return compare::read_run_to_compare(path);
-    throw InputError(fmt::format(
-        "{}: there is no such folder; name a results folder, as `lodbench run --out DIR` writes it",
-        path.string()));
+    expect_results_folder(path);
+    return compare::read_run_to_compare(path);
 }
 
 void print(const compare::Comparison& comparison, const Options& options) {

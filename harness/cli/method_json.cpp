@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "results/json.h"
+
 namespace lodbench::cli {
 
 namespace {
@@ -15,8 +17,7 @@ Json::Value param_json(const run::ParamInfo& param) {
         case ParamType::boolean: json["default"] = param.default_number != 0; break;
         case ParamType::choice:
             json["default"] = param.default_choice;
-            json["choices"] = Json::arrayValue;
-            for (const std::string& choice : param.choices) json["choices"].append(choice);
+            json["choices"] = results::array_of(param.choices);
             break;
         case ParamType::integer:
             json["default"] = Json::Int64(param.default_number);
@@ -32,10 +33,6 @@ Json::Value param_json(const run::ParamInfo& param) {
     return json;
 }
 
-Json::Value text_or_null(const std::string& text) {
-    return text.empty() ? Json::Value::null : Json::Value(text);
-}
-
 }  // namespace
 
 Json::Value method_json(const run::MethodInfo& method) {
@@ -46,13 +43,12 @@ Json::Value method_json(const run::MethodInfo& method) {
     json["version"] = method.version;
     json["plugin"] = method.plugin.string();
     json["compiled"] = method.compiled;
-    json["quality_knob"] = text_or_null(method.quality_knob);
-    json["claimed_bound"] = text_or_null(method.claimed_bound);
+    json["quality_knob"] = results::text_or_null(method.quality_knob);
+    json["claimed_bound"] = results::text_or_null(method.claimed_bound);
     json["asynchronous"] = (method.capabilities & kAsynchronous) != 0;
     json["out_of_core"] = (method.capabilities & kOutOfCore) != 0;
     json["skirts"] = (method.capabilities & kSkirts) != 0;
-    json["gl_extensions"] = Json::arrayValue;
-    for (const std::string& name : method.gl_extensions) json["gl_extensions"].append(name);
+    json["gl_extensions"] = results::array_of(method.gl_extensions);
     json["params"] = Json::arrayValue;
     for (const run::ParamInfo& param : method.params) json["params"].append(param_json(param));
     return json;

@@ -118,6 +118,15 @@ CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string&
         ->type_name("UINT");
 }
 
+void expect_results_folder(const std::filesystem::path& path, const char* or_else) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return;
+    throw InputError(fmt::format(
+        "{}: there is no such folder; name a results folder, as `lodbench run --out DIR` writes "
+        "it{}",
+        path.string(), or_else));
+}
+
 std::vector<run::PluginListing> find_plugins(
     const std::vector<std::filesystem::path>& plugin_dirs) {
     return run::list_plugins(run::plugin_folders(plugin_dirs));

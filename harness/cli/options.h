@@ -40,6 +40,9 @@ CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string&
 /// --time-limit, seconds.
 void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& help);
 
+/// Throws InputError where there is no folder; `or_else`: what else might be named, in words.
+void expect_results_folder(const std::filesystem::path& path, const char* or_else = "");
+
 /// What is found in `plugin_dirs` and in the usual folders.
 [[nodiscard]] std::vector<run::PluginListing> find_plugins(
     const std::vector<std::filesystem::path>& plugin_dirs);

@@ -11,6 +11,7 @@
 #include "base/console.h"
 #include "base/files.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "report/html/figure.h"
 #include "report/html/report.h"
 #include "report/junit.h"
@@ -33,13 +34,7 @@ std::vector<results::ResultFolder> read_folders(const std::vector<fs::path>& pat
     std::vector<results::ResultFolder> folders;
     std::set<fs::path> known;
     for (const fs::path& path : paths) {
-        std::error_code error;
-        if (!fs::is_directory(path, error)) {
-            throw InputError(fmt::format(
-                "{}: there is no such folder; name a results folder, as `lodbench run --out DIR` "
-                "writes it",
-                path.string()));
-        }
+        expect_results_folder(path);
         if (!known.insert(fs::canonical(path)).second) {
             throw InputError(fmt::format("{}: this folder is named twice", path.string()));
         }

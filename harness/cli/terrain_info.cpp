@@ -35,18 +35,14 @@ Json::Value json_of(const TerrainText& text) {
     object["max_height_m"] = info.max_height;
     object["spacing_m"] = pair(info.spacing);
     object["spacing_assumed"] = text.provenance.spacing_assumed;
-    object["reference"] =
-        text.provenance.reference.empty() ? Json::Value() : Json::Value(text.provenance.reference);
+    object["reference"] = results::text_or_null(text.provenance.reference);
     object["world"] = kWorld;
     object["extent_min_m"] = pair(info.extent_min());
     object["extent_max_m"] = pair(info.extent_max());
     object["voids_filled"] = Json::UInt64(info.void_count);
-    object["warnings"] = Json::arrayValue;
-    for (const std::string& warning : warnings_of(info, text.provenance)) {
-        object["warnings"].append(warning);
-    }
+    object["warnings"] = results::array_of(warnings_of(info, text.provenance));
     object["checksum"] = info.checksum;
-    object["written"] = text.written.empty() ? Json::Value() : Json::Value(text.written);
+    object["written"] = results::text_or_null(text.written);
     if (!text.store) return object;
     const terrain::StoreLayout layout(info.rows, info.columns, *text.store);
     Json::Value& store = object["store"];

@@ -39,8 +39,7 @@ int run(const VerifyOptions& options) {
         object["bytes"] = Json::UInt64(report.bytes);
         object["seconds"] = seconds;
         object["fault_count"] = Json::UInt64(report.fault_count);
-        object["faults"] = Json::arrayValue;
-        for (const std::string& fault : report.faults) object["faults"].append(fault);
+        object["faults"] = results::array_of(report.faults);
         base::print("{}\n", results::to_text(object, true));
         return status;
     }

@@ -13,6 +13,7 @@
 #include "base/console.h"
 #include "base/files.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "report/html/trend_page.h"
 #include "report/trend_rows.h"
 #include "results/folder.h"
@@ -45,13 +46,8 @@ bool holds_run(const fs::path& folder) {
 
 /// The folder, or those in it that hold a run, in the order of their names.
 std::vector<fs::path> runs_at(const fs::path& folder) {
+    expect_results_folder(folder, ", or a folder of them");
     std::error_code error;
-    if (!fs::is_directory(folder, error)) {
-        throw InputError(fmt::format(
-            "{}: there is no such folder; name a results folder, as `lodbench run --out DIR` "
-            "writes it, or a folder of them",
-            folder.string()));
-    }
     if (holds_run(folder)) return {folder};
     std::vector<fs::path> runs;
     for (fs::directory_iterator entry(folder, error), end; entry != end; entry.increment(error)) {

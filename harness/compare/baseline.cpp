@@ -120,11 +120,12 @@ void remove_other_frames(const fs::path& frames, const std::set<std::string>& ke
     }
 }
 
-void write_files(const results::ResultFolder& run, const fs::path& out) {
+void write_files(const results::ResultFolder& run, const std::vector<const CellRecord*>& cells,
+                 const fs::path& out) {
     std::string lines;
     std::set<std::string> files;
     fs::create_directories(out / "frames");
-    for (const CellRecord* cell : first_repetitions(run)) {
+    for (const CellRecord* cell : cells) {
         const auto table = run.frames.find(cell->cell);
         if (table == run.frames.end()) {
             throw InputError(
@@ -151,9 +152,9 @@ void write_baseline(const results::ResultFolder& run, const fs::path& out) {
     if (!run.warnings.empty()) {
         throw InputError(fmt::format("{}: {}", run.path.string(), run.warnings.front()));
     }
-    (void)first_repetitions(run);  // refuses before anything is written
+    const auto cells = first_repetitions(run);  // refuses before anything is written
     try {
-        write_files(run, out);
+        write_files(run, cells, out);
     } catch (const fs::filesystem_error& error) {
         throw EnvironmentError(
             fmt::format("cannot write the baseline {}: {}", out.string(), error.what()));

@@ -79,16 +79,10 @@ std::string no_times(const results::ResultFolder& base, const results::ResultFol
     return differ.empty() ? "" : "times are not compared, for the machines differ: " + differ;
 }
 
-Json::Value texts(const std::vector<std::string>& list) {
-    Json::Value json = Json::arrayValue;
-    for (const std::string& text : list) json.append(text);
-    return json;
-}
-
 Json::Value to_json(const TimeComparison& time) {
     Json::Value json;
     json["figure"] = time.figure;
-    json["device"] = time.device.empty() ? Json::Value::null : Json::Value(time.device);
+    json["device"] = results::text_or_null(time.device);
     json["base_repetitions"] = Json::UInt64(time.base_runs);
     json["new_repetitions"] = Json::UInt64(time.new_runs);
     json["base"] = time.base;
@@ -113,7 +107,7 @@ Json::Value to_json(const SettingComparison& setting) {
     json["setting"] = setting.label;
     json["cell"] = setting.cell;
     json["one_device"] = setting.one_device;
-    json["failures"] = texts(setting.failures);
+    json["failures"] = results::array_of(setting.failures);
     json["changes"] = Json::arrayValue;
     for (const Change& change : setting.changes) {
         Json::Value entry;
@@ -135,7 +129,7 @@ Json::Value to_json(const SettingComparison& setting) {
     }
     json["times"] = Json::arrayValue;
     for (const TimeComparison& time : setting.times) json["times"].append(to_json(time));
-    json["notes"] = texts(setting.notes);
+    json["notes"] = results::array_of(setting.notes);
     return json;
 }
 
@@ -210,9 +204,9 @@ Json::Value to_json(const Comparison& comparison) {
     json["new"] = comparison.now;
     json["gate_holds"] = comparison.gate_holds();
     json["time_tests"] = Json::UInt64(comparison.time_tests);
-    json["missing"] = texts(comparison.missing);
-    json["added"] = texts(comparison.added);
-    json["notes"] = texts(comparison.notes);
+    json["missing"] = results::array_of(comparison.missing);
+    json["added"] = results::array_of(comparison.added);
+    json["notes"] = results::array_of(comparison.notes);
     json["settings"] = Json::arrayValue;
     for (const SettingComparison& setting : comparison.settings) {
         json["settings"].append(to_json(setting));

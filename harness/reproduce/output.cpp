@@ -249,8 +249,7 @@ Json::Value to_json(const std::vector<PaperOutcome>& outcomes) {
         paper["paper"] = outcome.paper->id;
         paper["title"] = outcome.paper->title;
         paper["quick"] = outcome.quick;
-        paper["conditions"] = Json::arrayValue;
-        for (const std::string& line : conditions(outcome)) paper["conditions"].append(line);
+        paper["conditions"] = results::array_of(conditions(outcome));
         for (const Outcome which : kOutcomes) {
             paper["counts"][name_of(which)] = Json::UInt64(count(outcome, which));
         }

@@ -1,7 +1,5 @@
 #include "reproduce/paper.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace lodbench::reproduce {
@@ -28,20 +26,6 @@ std::string Selection::words() const {
     for (const auto& [name, value] : params) add(name + "=" + value);
     add(scenario);
     return text;
-}
-
-std::optional<double> Figure::of(const CellWithFrames& cell) const {
-    double product = 1;
-    for (const Factor& factor : factors) {
-        const auto value = factor.read(cell);
-        if (!value || (factor.divides && *value == 0)) return std::nullopt;
-        product = factor.divides ? product / *value : product * *value;
-    }
-    return product;
-}
-
-bool Figure::is_time() const {
-    return std::ranges::any_of(factors, &Factor::is_time);
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> Table::baseline_of(std::size_t row,

@@ -1,11 +1,8 @@
 // A paper's file: TOML that a stranger may have written, read key by key.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -26,7 +23,6 @@ namespace {
 
 constexpr const char* kKind = "a paper";
 constexpr std::size_t kMostSelections = 1000;
-constexpr std::string_view kFrames = "frames.";
 
 std::string required_text(Section& section, std::string_view key, const std::string& what) {
     auto text = section.text(key);
@@ -461,45 +457,6 @@ OwnTerrain read_terrain(Section& top) {
     return terrain;
 }
 
-/// "frames.triangles@0.5". Throws InputError.
-Figure::Factor read_frame_factor(const std::string& word, const std::string& where) {
-    const std::size_t at = word.find('@');
-    const std::string column = word.substr(kFrames.size(), at - kFrames.size());
-    double part = -1;
-    const char* const end = word.data() + word.size();
-    const bool known = column == "wall_ms" || column == "triangles" || column == "pixel_p999_px" ||
-                       column == "popping_p999_px";
-    const auto read = at == word.npos ? std::from_chars_result{end, std::errc::invalid_argument}
-                                      : std::from_chars(word.data() + at + 1, end, part);
-    if (!known || read.ec != std::errc() || read.ptr != end || !(part >= 0 && part <= 1)) {
-        throw InputError(fmt::format(
-            "{}: {} is no figure of a frame; write frames.COLUMN@PART with a column of wall_ms, "
-            "triangles, pixel_p999_px, popping_p999_px and a part of the flight from 0 to 1",
-            where, base::printable(word)));
-    }
-    return {word, column == "wall_ms", false,
-            [column, part](const CellWithFrames& cell) -> std::optional<double> {
-                const auto* values = cell.frames == nullptr ? nullptr : cell.frames->find(column);
-                if (values == nullptr) return std::nullopt;
-                const double value =
-                    values->at(std::size_t(std::lround(part * double(values->size() - 1))));
-                return std::isnan(value) ? std::nullopt : std::optional(value);
-            }};
-}
-
-Figure::Factor read_factor(const std::string& word, const std::string& where) {
-    if (word.starts_with(kFrames)) return read_frame_factor(word, where);
-    auto field = results::number_field(word);
-    if (!field) {
-        throw InputError(fmt::format(
-            "{}: {} is no number of a cell; {}, counters.NAME, params.NAME, frames.COLUMN@PART",
-            where, base::printable(word),
-            Section::known_names(word, results::number_field_names())));
-    }
-    return {word, field->is_time(), false,
-            [read = field->read](const CellWithFrames& cell) { return read(*cell.cell); }};
-}
-
 template <typename Item>
 std::set<std::string> ids_of(const std::vector<Item>& items) {
     std::set<std::string> ids;
@@ -526,31 +483,6 @@ const char* name_of(Test::Kind kind) {
 std::string OwnTerrain::table_of(const fs::path& terrain_file) const {
     const std::string path = fs::absolute(terrain_file).lexically_normal().string();
     return fmt::format("{{ file = {}{} }}", toml_text(toml::value<std::string>(path)), keys);
-}
-
-Figure parse_figure(const std::string& text, const std::string& where) {
-    Figure figure;
-    figure.text = text;
-    bool divides = false;
-    bool expects_field = true;
-    std::istringstream words(text);
-    for (std::string word; words >> word; expects_field = !expects_field) {
-        if (!expects_field) {
-            if (word != "*" && word != "/") {
-                throw InputError(fmt::format("{}: {} in {}: fields are joined by * and /", where,
-                                             base::printable(word), base::printable(text)));
-            }
-            divides = word == "/";
-            continue;
-        }
-        figure.factors.push_back(read_factor(word, where));
-        figure.factors.back().divides = divides;
-    }
-    if (expects_field) {
-        throw InputError(fmt::format("{}: {} ends without a field; write one, as frame_ms.median",
-                                     where, base::printable(text)));
-    }
-    return figure;
 }
 
 Paper read_paper(const fs::path& file) {

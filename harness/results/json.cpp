@@ -125,6 +125,16 @@ Json::Value number(std::optional<double> value) {
     return *value;
 }
 
+Json::Value text_or_null(const std::string& text) {
+    return text.empty() ? Json::Value::null : Json::Value(text);
+}
+
+Json::Value array_of(const std::vector<std::string>& texts) {
+    Json::Value array = Json::arrayValue;
+    for (const std::string& text : texts) array.append(text);
+    return array;
+}
+
 Json::Value number_or_inf(std::optional<double> value) {
     if (value && std::isinf(*value) && *value > 0) return "inf";
     return number(value);

@@ -38,6 +38,12 @@ inline constexpr int kSchemaVersion = 1;
 /// Null for an absent or non-finite number.
 [[nodiscard]] Json::Value number(std::optional<double> value);
 
+/// Null for an empty text.
+[[nodiscard]] Json::Value text_or_null(const std::string& text);
+
+/// Empty where there is none.
+[[nodiscard]] Json::Value array_of(const std::vector<std::string>& texts);
+
 /// A number of which infinity is a measured value: JSON has none, so it is the text "inf". Null
 /// where absent or NaN.
 [[nodiscard]] Json::Value number_or_inf(std::optional<double> value);

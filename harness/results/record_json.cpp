@@ -26,7 +26,7 @@ Json::Value encode(double value) {
 }
 
 Json::Value encode(const std::string& value) {
-    return value.empty() ? Json::Value::null : Json::Value(value);
+    return text_or_null(value);
 }
 
 Json::Value encode(const Params& params) {

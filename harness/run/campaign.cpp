@@ -33,7 +33,7 @@ Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
     for (const PluginListing& plugin : plugins) {
         Json::Value entry;
         entry["path"] = plugin.path.string();
-        entry["refusal"] = plugin.refusal.empty() ? Json::Value::null : Json::Value(plugin.refusal);
+        entry["refusal"] = results::text_or_null(plugin.refusal);
         entry["methods"] = Json::arrayValue;
         for (const MethodInfo& method : plugin.methods) {
             Json::Value json_method;
@@ -41,13 +41,11 @@ Json::Value listings_to_json(const std::vector<PluginListing>& plugins) {
             json_method["version"] = method.version;
             json_method["title"] = method.title;
             json_method["citation"] = method.citation;
-            json_method["quality_knob"] =
-                method.quality_knob.empty() ? Json::Value::null : Json::Value(method.quality_knob);
+            json_method["quality_knob"] = results::text_or_null(method.quality_knob);
             json_method["compiled"] = method.compiled;
             entry["methods"].append(json_method);
         }
-        entry["left_out"] = Json::arrayValue;
-        for (const std::string& words : plugin.left_out) entry["left_out"].append(words);
+        entry["left_out"] = results::array_of(plugin.left_out);
         json.append(entry);
     }
     return json;
@@ -117,8 +115,7 @@ Json::Value run_context(const RunRequest& request, const Plan& plan,
     }
     run["plugins"] = listings_to_json(plugins);
     run["noise"] = Json::arrayValue;
-    run["warnings"] = Json::arrayValue;
-    for (const std::string& warning : plan.warnings) run["warnings"].append(warning);
+    run["warnings"] = results::array_of(plan.warnings);
     run["cells"] = plan_to_json(plan);
     return run;
 }

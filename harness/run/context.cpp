@@ -36,10 +36,6 @@ std::string line_after(const char* file, std::string_view key, char separator) {
     return {};
 }
 
-Json::Value text_or_null(const std::string& text) {
-    return text.empty() ? Json::Value::null : Json::Value(text);
-}
-
 /// A group's quota in cores. Nothing where it has none.
 std::optional<double> quota_of(const fs::path& group) {
     std::string quota;
@@ -128,15 +124,15 @@ Json::Value machine_context() {
     Json::Value json;
     json["schema_version"] = results::kSchemaVersion;
     json["tool_version"] = LODBENCH_VERSION;
-    json["commit"] = text_or_null(LODBENCH_COMMIT);
-    json["build_type"] = text_or_null(LODBENCH_BUILD_TYPE);
+    json["commit"] = results::text_or_null(LODBENCH_COMMIT);
+    json["build_type"] = results::text_or_null(LODBENCH_BUILD_TYPE);
     json["compiler"] = LODBENCH_COMPILER;
     json["abi_tag"] = kAbiTag;
     utsname system{};
     uname(&system);
-    json["os"] = text_or_null(line_after("/etc/os-release", "PRETTY_NAME=", '='));
+    json["os"] = results::text_or_null(line_after("/etc/os-release", "PRETTY_NAME=", '='));
     json["kernel"] = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
-    json["cpu"] = text_or_null(line_after("/proc/cpuinfo", "model name", ':'));
+    json["cpu"] = results::text_or_null(line_after("/proc/cpuinfo", "model name", ':'));
     cpu_set_t cores;
     CPU_ZERO(&cores);
     // The cores that this process may use, which a container may have cut down.
@@ -157,9 +153,9 @@ Json::Value gl_context(const results::CellResult& result) {
     json["vendor"] = result.gl_vendor;
     json["renderer"] = result.gl_renderer;
     json["version"] = result.gl_version;
-    json["device"] = text_or_null(result.device_description);
+    json["device"] = results::text_or_null(result.device_description);
     json["software"] = result.software;
-    json["timer_verdict"] = text_or_null(result.cell.timer_verdict);
+    json["timer_verdict"] = results::text_or_null(result.cell.timer_verdict);
     return json;
 }
 

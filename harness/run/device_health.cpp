@@ -65,15 +65,11 @@ std::optional<T> growth(const std::optional<T>& from, const std::optional<T>& to
     return *to - *from;
 }
 
-Json::Value text_or_null(const std::string& text) {
-    return text.empty() ? Json::Value::null : Json::Value(text);
-}
-
 Json::Value to_json(const GpuFacts& facts) {
     Json::Value json;
-    json["name"] = text_or_null(facts.name);
+    json["name"] = results::text_or_null(facts.name);
     json["source"] = facts.source;
-    json["pci"] = text_or_null(facts.pci);
+    json["pci"] = results::text_or_null(facts.pci);
     json["max_mhz"] = results::number(facts.max_mhz);
     json["limit_c"] = results::number(facts.limit_c);
     return json;
@@ -196,7 +192,7 @@ DeviceHealth::DeviceHealth(Setup setup)
     : shared_(std::make_shared<Shared>(std::move(setup.find_gpu), setup.cpu)),
       interval_(setup.interval),
       patience_(setup.patience) {
-    cpu_context_["cpu_governor"] = text_or_null(setup.cpu.governor());
+    cpu_context_["cpu_governor"] = results::text_or_null(setup.cpu.governor());
     cpu_context_["cpu_max_mhz"] = results::number(setup.cpu.max_mhz());
     shared_->thread = std::thread([shared = shared_] { shared->serve(); });
 }

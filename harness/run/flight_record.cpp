@@ -195,8 +195,7 @@ std::vector<std::string> record_flight(const fs::path& out, const std::string& n
         json["needed"].append(entry);
     }
     const std::vector<std::string> warnings = check.warnings(name);
-    json["warnings"] = Json::arrayValue;
-    for (const std::string& warning : warnings) json["warnings"].append(warning);
+    json["warnings"] = results::array_of(warnings);
     base::write_whole(file, results::seal(json) + "\n");
     return warnings;
 }

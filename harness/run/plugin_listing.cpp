@@ -37,8 +37,7 @@ Json::Value to_json(const ParamInfo& param) {
     json["minimum"] = param.minimum;
     json["maximum"] = param.maximum;
     json["default_choice"] = param.default_choice;
-    json["choices"] = Json::arrayValue;
-    for (const std::string& choice : param.choices) json["choices"].append(choice);
+    json["choices"] = results::array_of(param.choices);
     json["help"] = param.help;
     return json;
 }
@@ -50,8 +49,7 @@ Json::Value to_json(const MethodInfo& method) {
     json["citation"] = method.citation;
     json["version"] = method.version;
     json["capabilities"] = method.capabilities;
-    json["gl_extensions"] = Json::arrayValue;
-    for (const std::string& name : method.gl_extensions) json["gl_extensions"].append(name);
+    json["gl_extensions"] = results::array_of(method.gl_extensions);
     json["params"] = Json::arrayValue;
     for (const ParamInfo& param : method.params) json["params"].append(to_json(param));
     json["quality_knob"] = method.quality_knob;
