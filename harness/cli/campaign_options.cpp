@@ -228,7 +228,7 @@ void Progress::cell_finished(const run::PlannedCell& cell, std::size_t index, st
                      time_left(count - index - 1, 0)));
 }
 
-std::string Progress::summary(const run::CampaignOutcome& outcome, const Json::Value& run) {
+std::string Progress::summary(const run::CampaignOutcome& outcome, const results::RunRecord& run) {
     return report::summary_text(outcome.cells, outcome.warnings, run);
 }
 

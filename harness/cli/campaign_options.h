@@ -72,7 +72,7 @@ public:
     void cell_finished(const run::PlannedCell& cell, std::size_t index, std::size_t count,
                        const results::CellRecord& record) override;
     [[nodiscard]] std::string summary(const run::CampaignOutcome& outcome,
-                                      const Json::Value& run) override;
+                                      const results::RunRecord& run) override;
     /// A line in the place of the one that was redrawn last.
     void line(const std::string& text) const;
     /// Redraws the line, some times a second at most; nothing where there is no terminal.

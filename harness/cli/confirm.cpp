@@ -47,13 +47,12 @@ public:
             request_.settings.push_back(
                 fmt::format("{}.{}={}", like.method, param, results::value_text(value)));
         }
-        for (const std::string& key : run.run["overrides"].getMemberNames()) {
-            request_.overrides.set(key, run.run["overrides"][key].asString(),
-                                   fmt::format("{}: overrides.{}", where(run), key));
+        for (const auto& [key, value] : run.run.overrides) {
+            request_.overrides.set(key, value, fmt::format("{}: overrides.{}", where(run), key));
         }
         request_.overrides.set("measure.truth", "false", "--confirm");
-        request_.overrides.set("run.seed", std::to_string(run.run["seed"].asUInt64()), "--confirm");
-        request_.device = run.run["device_asked"].asString();
+        request_.overrides.set("run.seed", std::to_string(run.run.seed), "--confirm");
+        request_.device = run.run.device_asked;
         request_.kept_knobs = false;  // every parameter is given
         request_.load_average = run::load_average();
         request_.command_line = "lodbench compare --confirm";
@@ -84,30 +83,28 @@ private:
     }
 
     [[nodiscard]] fs::path scenario_file(const results::ResultFolder& run) const {
-        for (const Json::Value& scenario : run.run["scenarios"]) {
-            if (scenario["name"].asString() != like_.scenario) continue;
-            const fs::path file = scenario["file"].asString();
-            if (!fs::is_regular_file(file)) {
-                throw InputError(
-                    fmt::format("--confirm: {}: scenario '{}' was flown from {}, "
-                                "which is not there; put it back",
-                                where(run), like_.scenario, file.string()));
-            }
-            if (base::read_text(file) == scenario["text"].asString()) return file;
-            throw InputError(fmt::format(
-                "--confirm: {} has changed since {} was flown; put it back, or fly both "
-                "anew. {}",
-                file.string(), name_, kRemedy));
+        const results::ScenarioContext* scenario = run.run.scenario(like_.scenario);
+        if (scenario == nullptr) {
+            throw InputError(fmt::format("--confirm: {}: scenario '{}' is not in it", where(run),
+                                         like_.scenario));
         }
-        throw InputError(
-            fmt::format("--confirm: {}: scenario '{}' is not in it", where(run), like_.scenario));
+        const fs::path file = scenario->file;
+        if (!fs::is_regular_file(file)) {
+            throw InputError(fmt::format(
+                "--confirm: {}: scenario '{}' was flown from {}, which is not there; put it back",
+                where(run), like_.scenario, file.string()));
+        }
+        if (base::read_text(file) == scenario->text) return file;
+        throw InputError(fmt::format(
+            "--confirm: {} has changed since {} was flown; put it back, or fly both anew. {}",
+            file.string(), name_, kRemedy));
     }
 
     [[nodiscard]] fs::path plugin_folder(const results::ResultFolder& run) const {
-        for (const Json::Value& plugin : run.run["plugins"]) {
-            for (const Json::Value& method : plugin["methods"]) {
-                if (method["id"].asString() != like_.method) continue;
-                const fs::path file = plugin["path"].asString();
+        for (const results::PluginContext& plugin : run.run.plugins) {
+            for (const results::MethodContext& method : plugin.methods) {
+                if (method.id != like_.method) continue;
+                const fs::path file = plugin.path;
                 if (fs::is_regular_file(file)) return file.parent_path();
                 throw InputError(fmt::format(
                     "--confirm: the plugin that {} was flown with, {}, is no longer there. {}",

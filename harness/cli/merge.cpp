@@ -31,10 +31,8 @@ struct Options {
 /// stand in run.json.
 std::string summary_of(const results::MergedRun& merged) {
     std::vector<std::string> warnings = merged.warnings;
-    for (const Json::Value& warning : merged.run["warnings"]) {
-        if (std::ranges::find(warnings, warning.asString()) == warnings.end()) {
-            warnings.push_back(warning.asString());
-        }
+    for (const std::string& warning : merged.run.warnings) {
+        if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
     }
     return report::summary_text(merged.cells, warnings, merged.run);
 }

@@ -22,9 +22,6 @@ using Elsewhere = DeterministicField::Elsewhere;
 
 namespace {
 
-/// In run.json, and in no run's: what marks a folder as a baseline.
-constexpr const char* kMark = "baseline_of";
-
 /// Depends on the last bits of the rasteriser's depths, which another processor may round
 /// otherwise.
 bool is_hash_of_pictures(const DeterministicField& field) {
@@ -45,22 +42,29 @@ Json::Value kept_of(const CellRecord& cell) {
     return kept;
 }
 
-Json::Value context_of(const Json::Value& run) {
-    Json::Value context;
-    for (const char* name : {"schema_version", "tool_version", "commit", "build_type", "compiler",
-                             "os", "cpu", "seed", "overrides"}) {
-        context[name] = run[name];
+results::RunRecord context_of(const results::RunRecord& run) {
+    results::RunRecord context;
+    context.tool_version = run.tool_version;
+    context.commit = run.commit;
+    context.build_type = run.build_type;
+    context.compiler = run.compiler;
+    context.os = run.os;
+    context.cpu = run.cpu;
+    context.seed = run.seed;
+    context.overrides = run.overrides;
+    if (run.gl) {
+        context.gl.emplace();
+        context.gl->vendor = run.gl->vendor;
+        context.gl->renderer = run.gl->renderer;
+        context.gl->version = run.gl->version;
     }
-    for (const char* name : {"vendor", "renderer", "version"}) {
-        context["gl"][name] = run["gl"][name];
+    for (const results::ScenarioContext& scenario : run.scenarios) {
+        results::ScenarioContext& kept = context.scenarios.emplace_back();
+        kept.name = scenario.name;
+        kept.text = scenario.text;
+        kept.frames = scenario.frames;
     }
-    context["scenarios"] = Json::arrayValue;
-    for (const Json::Value& scenario : run["scenarios"]) {
-        Json::Value kept;
-        for (const char* name : {"name", "text", "frames"}) kept[name] = scenario[name];
-        context["scenarios"].append(kept);
-    }
-    context[kMark] = run["campaign"];
+    context.baseline_of = run.campaign;
     return context;
 }
 
@@ -106,7 +110,8 @@ std::vector<const CellRecord*> first_repetitions(const results::ResultFolder& ru
 
 void refuse_other_folder(const fs::path& out) {
     if (!fs::exists(out) || fs::is_empty(out)) return;
-    if (fs::is_regular_file(out / "run.json") && results::read_run(out).isMember(kMark)) return;
+    if (fs::is_regular_file(out / "run.json") && !results::read_run(out).baseline_of.empty())
+        return;
     throw InputError(
         fmt::format("{}: this folder is not empty and no baseline; name another", out.string()));
 }
@@ -141,7 +146,7 @@ void write_files(const results::ResultFolder& run, const std::vector<const CellR
         base::write_whole(out / "frames" / (cell->cell + ".csv"), csv);
     }
     base::write_whole(out / "cells.jsonl", lines);
-    base::write_whole(out / "run.json", results::to_text(context_of(run.run), true) + "\n");
+    results::write_run(context_of(run.run), out);
     remove_other_frames(out / "frames", files);
 }
 

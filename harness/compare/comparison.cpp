@@ -43,26 +43,25 @@ SettingComparison compare_setting(const Setting& base, const Setting& now,
 }
 
 /// Scenarios of one name whose text is not the same.
-void note_other_scenarios(const Json::Value& base, const Json::Value& now,
+void note_other_scenarios(const results::RunRecord& base, const results::RunRecord& now,
                           std::vector<std::string>& notes) {
-    for (const Json::Value& before : base["scenarios"]) {
-        for (const Json::Value& after : now["scenarios"]) {
-            if (before["name"] != after["name"] || before["text"] == after["text"]) continue;
-            notes.push_back(fmt::format("the text of scenario '{}' is not the same in both runs",
-                                        before["name"].asString()));
-        }
+    for (const results::ScenarioContext& before : base.scenarios) {
+        const results::ScenarioContext* after = now.scenario(before.name);
+        if (after == nullptr || before.text == after->text) continue;
+        notes.push_back(
+            fmt::format("the text of scenario '{}' is not the same in both runs", before.name));
     }
-    const Json::Value &before = base["overrides"], &after = now["overrides"];
-    if (before != after) {
+    if (base.overrides != now.overrides) {
         notes.push_back(fmt::format("what was overridden is not the same: {} and {}",
-                                    results::to_text(before), results::to_text(after)));
+                                    results::to_text(results::encode(base.overrides)),
+                                    results::to_text(results::encode(now.overrides))));
     }
 }
 
 /// What disturbed the times of a run.
-void note_noise(const char* which, const Json::Value& run, std::vector<std::string>& notes) {
-    for (const Json::Value& words : run["noise"]) {
-        notes.push_back(fmt::format("{}: {}", which, words.asString()));
+void note_noise(const char* which, const results::RunRecord& run, std::vector<std::string>& notes) {
+    for (const std::string& words : run.noise) {
+        notes.push_back(fmt::format("{}: {}", which, words));
     }
 }
 

@@ -222,14 +222,17 @@ TimeVerdict verdict_of(const TimeComparison& time, const Rules& rules) {
 
 }  // namespace
 
-std::string machines_differ(const Json::Value& base, const Json::Value& now) {
+std::string machines_differ(const results::MachineContext& base,
+                            const results::MachineContext& now) {
+    constexpr std::string_view kTold[] = {"os", "kernel", "build_type", "cpu_quota_cores"};
     std::string words;
-    for (const char* name : {"os", "kernel", "build_type", "cpu_quota_cores"}) {
-        const Json::Value &before = base[name], &after = now[name];
-        if (before == after) continue;
-        words += fmt::format("{}{} is {} and {}", words.empty() ? "" : ", ", name,
-                             results::to_text(before), results::to_text(after));
-    }
+    results::each_field<results::MachineContext>([&](const auto& field) {
+        const auto &before = base.*field.member, &after = now.*field.member;
+        if (std::ranges::count(kTold, field.name) == 0 || before == after) return;
+        words += fmt::format("{}{} is {} and {}", words.empty() ? "" : ", ", field.name,
+                             results::to_text(results::encode(before)),
+                             results::to_text(results::encode(after)));
+    });
     return words;
 }
 

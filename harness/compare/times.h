@@ -10,7 +10,8 @@ namespace lodbench::compare {
 
 /// In words, in what two runs' machines differ, so that their times say nothing of each other
 /// (system, kernel, build type, CPU quota); "" where nothing is known to.
-[[nodiscard]] std::string machines_differ(const Json::Value& base, const Json::Value& now);
+[[nodiscard]] std::string machines_differ(const results::MachineContext& base,
+                                          const results::MachineContext& now);
 
 /// Fills in `times`, without verdicts, for each device that flew both; notes where none did.
 void measure_times(const Setting& base, const Setting& now,

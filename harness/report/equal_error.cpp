@@ -10,7 +10,6 @@
 #include "measure/statistics.h"
 #include "report/aligned_table.h"
 #include "results/error_metric.h"
-#include "results/json.h"
 
 namespace lodbench::report {
 
@@ -182,39 +181,22 @@ bool EqualFlight::meets(double error) const {
     return error >= error_px * (1 - tolerance) && error <= error_px * (1 + tolerance);
 }
 
-std::vector<EqualFlight> equal_flights(const Json::Value& run) {
+std::vector<EqualFlight> equal_flights(const results::RunRecord& run) {
     std::vector<EqualFlight> flights;
-    const Json::Value& scenarios = results::member_of(run, "scenarios");
-    if (!scenarios.isArray()) return flights;
-    for (const Json::Value& scenario : scenarios) {
-        const Json::Value& error = results::member_of(scenario, "equal", "error_px");
-        const Json::Value& tolerance = results::member_of(scenario, "equal", "tolerance");
-        if (!error.isNumeric() || !tolerance.isNumeric() || !scenario["name"].isString()) continue;
-        EqualFlight& flight = flights.emplace_back();
-        flight.scenario = scenario["name"].asString();
-        flight.error_px = error.asDouble();
-        flight.tolerance = tolerance.asDouble();
-        flight.as_kept = results::member_of(scenario, "equal", "as_kept") == Json::Value(true);
-        const Json::Value& off = results::member_of(scenario, "equal", "off");
-        if (!off.isObject()) continue;
-        for (auto reason = off.begin(); reason != off.end(); ++reason) {
-            if (reason->isString()) flight.off[reason.name()] = reason->asString();
-        }
+    for (const results::ScenarioContext& scenario : run.scenarios) {
+        if (!scenario.equal) continue;
+        const results::EqualContext& equal = *scenario.equal;
+        flights.push_back(
+            {scenario.name, equal.error_px, equal.tolerance, equal.as_kept, equal.off});
     }
     return flights;
 }
 
-std::map<std::string, std::string> quality_knobs(const Json::Value& run) {
+std::map<std::string, std::string> quality_knobs(const results::RunRecord& run) {
     std::map<std::string, std::string> knobs;
-    const Json::Value& plugins = results::member_of(run, "plugins");
-    if (!plugins.isArray()) return knobs;
-    for (const Json::Value& plugin : plugins) {
-        const Json::Value& methods = results::member_of(plugin, "methods");
-        if (!methods.isArray()) continue;
-        for (const Json::Value& method : methods) {
-            const Json::Value& knob = results::member_of(method, "quality_knob");
-            const Json::Value& id = results::member_of(method, "id");
-            if (knob.isString() && id.isString()) knobs.emplace(id.asString(), knob.asString());
+    for (const results::PluginContext& plugin : run.plugins) {
+        for (const results::MethodContext& method : plugin.methods) {
+            if (!method.quality_knob.empty()) knobs.emplace(method.id, method.quality_knob);
         }
     }
     return knobs;

@@ -2,14 +2,13 @@
 // A flight whose methods were set to the same measured error: the table to compare them by, and in
 // words who is fastest.
 
-#include <json/value.h>
-
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "results/cell_groups.h"
+#include "results/run_record.h"
 
 namespace lodbench::report {
 
@@ -25,10 +24,10 @@ struct EqualFlight {
     [[nodiscard]] bool meets(double error) const;
 };
 
-/// Those of run.json, in its order; what is not well formed is left out.
-[[nodiscard]] std::vector<EqualFlight> equal_flights(const Json::Value& run);
+/// Those of run.json, in its order.
+[[nodiscard]] std::vector<EqualFlight> equal_flights(const results::RunRecord& run);
 /// Each method's quality knob by its id, as run.json has it.
-[[nodiscard]] std::map<std::string, std::string> quality_knobs(const Json::Value& run);
+[[nodiscard]] std::map<std::string, std::string> quality_knobs(const results::RunRecord& run);
 
 /// One setting of a method, over its repetitions.
 struct EqualRow {

@@ -14,7 +14,8 @@
 namespace lodbench::report {
 namespace {
 
-std::string equal_texts(const std::vector<results::CellRecord>& cells, const Json::Value& run) {
+std::string equal_texts(const std::vector<results::CellRecord>& cells,
+                        const results::RunRecord& run) {
     const auto knobs = quality_knobs(run);
     std::string text;
     for (const EqualFlight& flight : equal_flights(run)) {
@@ -26,21 +27,20 @@ std::string equal_texts(const std::vector<results::CellRecord>& cells, const Jso
 }  // namespace
 
 std::string summary_text(const std::vector<results::CellRecord>& cells,
-                         const std::vector<std::string>& warnings, const Json::Value& run) {
-    const std::uint64_t seed = run["seed"].asUInt64();
-    const auto line = [](const char* title, const Json::Value& value) {
-        return value.isNull() ? std::string()
-                              : fmt::format("- {}: {}\n", title, markdown_text(value.asString()));
+                         const std::vector<std::string>& warnings, const results::RunRecord& run) {
+    const auto line = [](const char* title, const std::string& value) {
+        return value.empty() ? std::string()
+                             : fmt::format("- {}: {}\n", title, markdown_text(value));
     };
     // Read as a comment: the tables first, what they depend on folded away below, but for what is
     // wrong with their times.
     std::string text;
-    for (const Json::Value& noise : run["noise"]) {
-        text += fmt::format("- Noise: {}\n", markdown_text(noise.asString()));
+    for (const std::string& noise : run.noise) {
+        text += fmt::format("- Noise: {}\n", markdown_text(noise));
     }
     if (!text.empty()) text += "\n";
     text += equal_texts(cells, run);
-    text += markdown_table(table_rows(cells, seed));
+    text += markdown_table(table_rows(cells, run.seed));
     std::vector<std::string> remarks = warnings;
     std::ranges::copy(results::device_differences(cells), std::back_inserter(remarks));
     std::ranges::copy(results::borrowed_truth(cells), std::back_inserter(remarks));
@@ -55,15 +55,14 @@ std::string summary_text(const std::vector<results::CellRecord>& cells,
         text += "\n</details>\n";
     }
     fold("Context");
-    text += line("lodbench", run["tool_version"]) + line("commit", run["commit"]);
-    text +=
-        line("command", run["command_line"]) + line("system", run["os"]) + line("CPU", run["cpu"]);
-    if (run["gl"].isObject()) {
-        text += line("renderer", run["gl"]["renderer"]) + line("OpenGL", run["gl"]["version"]);
-        text += line("timer", run["gl"]["timer_verdict"]);
+    text += line("lodbench", run.tool_version) + line("commit", run.commit);
+    text += line("command", run.command_line) + line("system", run.os) + line("CPU", run.cpu);
+    if (run.gl) {
+        text += line("renderer", run.gl->renderer) + line("OpenGL", run.gl->version);
+        text += line("timer", run.gl->timer_verdict);
     }
     for (const std::string& device : results::devices_of(cells)) text += line("device", device);
-    text += fmt::format("- seed: {}\n\n</details>\n", seed);
+    text += fmt::format("- seed: {}\n\n</details>\n", run.seed);
     return text;
 }
 

@@ -172,8 +172,7 @@ FlownExperiment fly(const PlannedExperiment& planned, const fs::path& program,
         campaign = run::run_campaign(planned.request, program, observer);
     }
     if (!campaign.error.empty()) throw EnvironmentError(campaign.error);
-    const Json::Value& software = results::member_of(campaign.run, "gl", "software");
-    flown.software = software.isBool() && software.asBool();
+    flown.software = campaign.run.gl && campaign.run.gl->software.value_or(false);
     flown.cells = campaign.cells;
     flown.frames = results::read_result_folder(campaign.out).frames;
     for (const results::CellRecord& cell : flown.cells) {

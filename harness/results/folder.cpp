@@ -52,17 +52,6 @@ double parse_field(std::string_view text, std::string_view column, const std::st
     return value;
 }
 
-void check_schema(const Json::Value& json, const fs::path& file) {
-    if (!json.isObject()) {
-        throw InputError(fmt::format("{}: no object; {}", file.string(), kCopyAgain));
-    }
-    if (json["schema_version"] == kSchemaVersion) return;
-    throw InputError(fmt::format(
-        "{}: schema_version is {}, expected {}; report it with the lodbench that wrote it",
-        file.string(), json.isMember("schema_version") ? to_text(json["schema_version"]) : "absent",
-        kSchemaVersion));
-}
-
 void read_cells(ResultFolder& folder) {
     const fs::path file = folder.path / "cells.jsonl";
     const std::string text = read_input(file,
@@ -85,7 +74,7 @@ void read_cells(ResultFolder& folder) {
         folder.warnings.push_back(
             "the last line of cells.jsonl is incomplete (its writer was stopped) and left out");
     }
-    const std::size_t planned = folder.run["cells"].size();
+    const std::size_t planned = folder.run.cells.size();
     if (planned > folder.cells.size()) {
         folder.warnings.push_back(fmt::format(
             "{} of the {} cells that were planned are not flown; finish them with --resume",
@@ -184,18 +173,6 @@ void read_search(ResultFolder& folder) {
 }
 
 }  // namespace
-
-Json::Value read_run(const fs::path& folder) {
-    const fs::path file = folder / "run.json";
-    Json::Value run =
-        parse_json(read_input(file, "name a results folder, as `lodbench run --out DIR` writes it"),
-                   file.string());
-    check_schema(run, file);
-    for (const char* key : {"scenarios", "warnings", "noise", "cells"}) {
-        if (!run[key].isNull()) (void)get_array(run, key, file.string());
-    }
-    return run;
-}
 
 void expect_plain_file(const fs::path& file) {
     std::error_code ignored;

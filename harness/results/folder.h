@@ -1,8 +1,6 @@
 #pragma once
 // The folder of one campaign, read back whole and checked: what a report is made of.
 
-#include <json/value.h>
-
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -15,6 +13,7 @@
 
 #include "results/cell.h"
 #include "results/match.h"
+#include "results/run_record.h"
 
 namespace lodbench::results {
 
@@ -56,16 +55,13 @@ struct FramesWanted {
 struct ResultFolder {
     std::filesystem::path path;
     std::string name;  ///< the folder's own name
-    Json::Value run;   ///< run.json, an object
+    RunRecord run;     ///< run.json
     std::vector<CellRecord> cells;
     std::map<std::string, FrameTable> frames;     ///< by cell; of the cells that are ok
     std::map<std::string, FlightRecord> flights;  ///< by scenario; of those that have one
     std::optional<MatchRecord> match;             ///< of a folder that `match` wrote
     std::vector<std::string> warnings;            ///< that something is not there yet
 };
-
-/// run.json of a folder, an object of this schema version. Throws InputError with file and remedy.
-[[nodiscard]] Json::Value read_run(const std::filesystem::path& folder);
 
 /// Reads and checks all of it. Throws InputError with file, line and remedy where something in it
 /// is missing, damaged, or of another schema version; results that were not measured, pictures and

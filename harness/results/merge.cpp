@@ -109,6 +109,11 @@ bool is_equal(const MergeInput::Cell& a, const MergeInput::Cell& b) {
     return to_json(left) == to_json(right);
 }
 
+template <typename T>
+bool same(const T& a, const T& b) {
+    return encode(a) == encode(b);
+}
+
 /// Every cell of every device once.
 std::vector<Taken> unite(const std::vector<MergeInput>& inputs) {
     std::map<std::string, std::map<std::string, Taken>> cells;  // by name and device
@@ -129,21 +134,21 @@ std::vector<Taken> unite(const std::vector<MergeInput>& inputs) {
         }
     }
     std::ranges::stable_sort(result, {}, [](const Taken& taken) {
-        const Json::Value& planned = taken.input->planned.at(taken.cell->record.cell);
-        return std::tuple(planned["place"].asUInt64(), taken.name);
+        const PlannedRecord& planned = taken.input->planned.at(taken.cell->record.cell);
+        return std::tuple(planned.place.value(), taken.name);
     });
     return result;
 }
 
-/// "cells" of the merged run.json: what is finished, under its name there, and what no folder has
+/// The cells of the merged run.json: what is finished, under its name there, and what no folder has
 /// finished.
-Json::Value unite_planned(const std::vector<MergeInput>& inputs, const std::vector<Taken>& taken,
-                          std::size_t& missing) {
-    std::map<std::tuple<std::uint64_t, std::string>, Json::Value> planned;
+std::vector<PlannedRecord> unite_planned(const std::vector<MergeInput>& inputs,
+                                         const std::vector<Taken>& taken, std::size_t& missing) {
+    std::map<std::tuple<std::uint64_t, std::string>, PlannedRecord> planned;
     std::set<std::string> finished;
-    const auto add = [&](Json::Value cell, const std::string& name) {
-        cell["id"] = name;
-        planned.emplace(std::tuple(cell["place"].asUInt64(), name), std::move(cell));
+    const auto add = [&](PlannedRecord cell, const std::string& name) {
+        cell.id = name;
+        planned.emplace(std::tuple(cell.place.value(), name), std::move(cell));
     };
     for (const Taken& cell : taken) {
         finished.insert(cell.cell->name);
@@ -158,105 +163,97 @@ Json::Value unite_planned(const std::vector<MergeInput>& inputs, const std::vect
         }
     }
     missing = planned.size() - done;
-    Json::Value json = Json::arrayValue;
-    for (auto& [key, cell] : planned) json.append(std::move(cell));
-    return json;
+    std::vector<PlannedRecord> cells;
+    for (auto& [key, cell] : planned) cells.push_back(std::move(cell));
+    return cells;
 }
 
 /// What a merged run.json keeps of each folder's: machine, driver, command, shard. Of a folder that
 /// was itself merged, what it kept.
-std::vector<Json::Value> contexts_of(const std::vector<MergeInput>& inputs) {
-    std::vector<Json::Value> contexts;
-    const auto add = [&](Json::Value context) {
-        if (std::ranges::find(contexts, context) == contexts.end()) {
-            contexts.push_back(std::move(context));  // a copy of a folder says nothing new
-        }
+std::vector<RunRecord> contexts_of(const std::vector<MergeInput>& inputs) {
+    std::vector<RunRecord> contexts;
+    const auto add = [&](const RunRecord& context) {  // a copy of a folder says nothing new
+        if (std::ranges::none_of(contexts, [&](const auto& other) { return same(other, context); }))
+            contexts.push_back(context);
     };
     for (const MergeInput& input : inputs) {
-        if (input.run["shards"].isArray()) {
-            for (const Json::Value& context : input.run["shards"]) add(context);
-            continue;
-        }
-        Json::Value context = input.run;
-        for (const char* key : {"scenarios", "plugins", "overrides"}) context.removeMember(key);
-        add(std::move(context));
+        for (const RunRecord& context : input.run.shards) add(context);
+        if (!input.run.shards.empty()) continue;
+        RunRecord context = input.run;
+        context.scenarios.clear();
+        context.plugins.clear();
+        context.overrides.clear();
+        add(context);
     }
     return contexts;
 }
 
-void add_once(Json::Value& list, const Json::Value& words) {
-    if (std::find(list.begin(), list.end(), words) == list.end()) list.append(words);
+template <typename T>
+void add_once(std::vector<T>& list, const T& value) {
+    if (std::ranges::none_of(list, [&](const T& other) { return same(other, value); })) {
+        list.push_back(value);
+    }
 }
 
 /// What disturbed times on a device, one text for what its folders say with other numbers.
-Json::Value unite_noise(const std::vector<Json::Value>& contexts) {
+std::vector<std::string> unite_noise(const std::vector<RunRecord>& contexts) {
     std::map<std::string, std::vector<std::string>> devices;
-    for (const Json::Value& context : contexts) {
-        const Json::Value& gl = context["gl"];
-        std::string device =
-            fmt::format("{}, {} cores", value_text(context["cpu"]), value_text(context["cores"]));
-        if (gl.isObject()) device = fmt::format("{}; {}", value_text(gl["renderer"]), device);
+    for (const RunRecord& context : contexts) {
+        std::string device = fmt::format("{}, {} cores", value_text(encode(context.cpu)),
+                                         value_text(encode(context.cores)));
+        if (context.gl) device = fmt::format("{}; {}", context.gl->renderer, device);
         std::vector<std::string>& texts = devices[device];
-        for (const Json::Value& words : context["noise"]) {
-            if (words.isString()) texts.push_back(words.asString());
-        }
+        texts.insert(texts.end(), context.noise.begin(), context.noise.end());
     }
-    Json::Value noise = Json::arrayValue;
+    std::vector<std::string> noise;
     for (const auto& [device, texts] : devices) {
         for (const std::string& words : fold_alike(texts)) {
-            noise.append(devices.size() == 1 ? words : fmt::format("on {}: {}", device, words));
+            noise.push_back(devices.size() == 1 ? words : fmt::format("on {}: {}", device, words));
         }
     }
     return noise;
 }
 
 /// What all have alike stands as in any run.json; what differs is null, and stands in "shards".
-Json::Value unite_runs(const std::vector<MergeInput>& inputs) {
-    Json::Value run = inputs.front().run;
+RunRecord unite_runs(const std::vector<MergeInput>& inputs) {
+    RunRecord run = inputs.front().run;
     for (const MergeInput& input : inputs) {
-        for (const std::string& key : run.getMemberNames()) {
-            if (run[key] != input.run[key]) run[key] = Json::Value::null;
-        }
+        each_field<RunRecord>([&](const auto& field) {
+            auto& value = run.*field.member;
+            if (!same(value, input.run.*field.member)) value = {};
+        });
     }
     for (const MergeInput& input : inputs) {  // texts that sort as times do
-        const Json::Value& started = input.run["started"];
-        if (run["started"].isNull() || started < run["started"]) run["started"] = started;
+        const std::string& started = input.run.started;
+        if (run.started.empty() || started < run.started) run.started = started;
     }
-    for (const char* key : {"shard", "shards"}) run.removeMember(key);
-    for (const char* key : {"warnings", "noise", "plugins", "scenarios"}) {
-        run[key] = Json::arrayValue;
-    }
-    std::set<std::string> scenarios;
+    run.shard.reset();
+    run.warnings.clear();
+    run.plugins.clear();
+    run.scenarios.clear();
     for (const MergeInput& input : inputs) {
-        for (const char* key : {"warnings", "plugins"}) {
-            for (const Json::Value& words : input.run[key]) add_once(run[key], words);
-        }
-        for (const Json::Value& scenario : input.run["scenarios"]) {
-            if (scenarios.insert(scenario["name"].asString()).second) {
-                run["scenarios"].append(scenario);
-            }
+        for (const std::string& words : input.run.warnings) add_once(run.warnings, words);
+        for (const PluginContext& plugin : input.run.plugins) add_once(run.plugins, plugin);
+        for (const ScenarioContext& scenario : input.run.scenarios) {
+            if (run.scenario(scenario.name) == nullptr) run.scenarios.push_back(scenario);
         }
     }
-    run["shards"] = Json::arrayValue;
-    std::vector<Json::Value> contexts = contexts_of(inputs);
-    run["noise"] = unite_noise(contexts);
-    for (Json::Value& context : contexts) run["shards"].append(std::move(context));
+    run.shards = contexts_of(inputs);
+    run.noise = unite_noise(run.shards);
     return run;
 }
 
 /// That parts of the campaign are in none of the folders; "" where they all are. `absent` counts
 /// their cells.
-std::string words_on_absent(const Json::Value& run, std::size_t& absent) {
+std::string words_on_absent(const RunRecord& run, std::size_t& absent) {
     std::set<std::uint64_t> places;  // a cell that two devices flew has one
-    for (const Json::Value& cell : run["cells"]) places.insert(cell["place"].asUInt64());
-    const std::uint64_t all = run["campaign_cells"].asUInt64();
+    for (const PlannedRecord& cell : run.cells) places.insert(cell.place.value());
+    const std::uint64_t all = run.campaign_cells.value();
     if (places.size() >= all) return {};
     absent = std::size_t(all) - places.size();
     std::map<int, std::set<int>> seen;  // by the number of shards
-    for (const Json::Value& context : run["shards"]) {
-        const Json::Value& shard = context["shard"];
-        if (shard.isNull()) continue;
-        seen[shard["count"].asInt()].insert(shard["number"].asInt());
+    for (const RunRecord& context : run.shards) {
+        if (context.shard) seen[context.shard->count].insert(context.shard->number);
     }
     std::string shards;
     if (seen.size() == 1) {  // else there is no one list of them
@@ -306,7 +303,7 @@ MergedRun merge_folders(const std::vector<fs::path>& folders, const fs::path& ou
 
     MergedRun merged;
     merged.run = unite_runs(inputs);
-    merged.run["cells"] = unite_planned(inputs, taken, merged.missing);
+    merged.run.cells = unite_planned(inputs, taken, merged.missing);
     for (const MergeInput& input : inputs) {
         merged.warnings.insert(merged.warnings.end(), input.warnings.begin(), input.warnings.end());
     }
@@ -333,9 +330,8 @@ MergedRun merge_folders(const std::vector<fs::path>& folders, const fs::path& ou
     }
     for (const auto& [input, cells] : by_input) copy_files_of_cells(*input, cells, draft.path());
     base::write_whole(draft.path() / "cells.jsonl", lines, base::Keep::for_now);
-    for (const std::string& warning : merged.warnings) add_once(merged.run["warnings"], warning);
-    base::write_whole(draft.path() / "run.json", to_text(merged.run, true) + "\n",
-                      base::Keep::for_now);
+    for (const std::string& warning : merged.warnings) add_once(merged.run.warnings, warning);
+    write_run(merged.run, draft.path(), base::Keep::for_now);
     base::write_whole(draft.path() / "summary.md", summary(merged), base::Keep::for_now);
     draft.finish();
     return merged;

@@ -1,8 +1,6 @@
 #pragma once
 // Folders of one campaign, flown in parts, joined into one that is read as any other.
 
-#include <json/value.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -10,11 +8,12 @@
 #include <vector>
 
 #include "results/cell.h"
+#include "results/run_record.h"
 
 namespace lodbench::results {
 
 struct MergedRun {
-    Json::Value run;                ///< the object of its run.json
+    RunRecord run;
     std::vector<CellRecord> cells;  ///< in the order of flight of the whole campaign
     std::vector<std::string> warnings;
     std::size_t missing = 0;  ///< cells that were planned, and are finished in none of the folders

@@ -87,16 +87,15 @@ std::string write_cell(const Taken& taken, const fs::path& out) {
 void copy_scenarios(const std::vector<MergeInput>& inputs, const fs::path& out) {
     std::map<std::string, fs::path> known;
     for (const MergeInput& input : inputs) {
-        for (const Json::Value& scenario : input.run["scenarios"]) {
-            const std::string file = scenario["name"].asString() + ".toml";
+        for (const ScenarioContext& scenario : input.run.scenarios) {
+            const std::string file = scenario.name + ".toml";
             const fs::path here = input.path / "scenarios" / file;
-            const std::string text = get_string(scenario, "text", input.where());
             expect_plain_file(here);
-            if (fs::exists(here) && base::read_text(here) != text) {
+            if (fs::exists(here) && base::read_text(here) != scenario.text) {
                 throw InputError(fmt::format("{}: this is not the text of {}; {}", here.string(),
                                              input.where(), kCopyAgain));
             }
-            base::write_whole(out / "scenarios" / file, text, Keep::for_now);
+            base::write_whole(out / "scenarios" / file, scenario.text, Keep::for_now);
         }
         for (const fs::path& file : plain_files(input.path / "scenarios")) {
             if (file.extension() == ".toml" || file.extension() == ".tmp") continue;

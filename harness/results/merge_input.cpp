@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "api/error.h"
 #include "base/files.h"
@@ -17,12 +19,11 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Of run.json: by which program and from what the cells come.
-constexpr const char* kProgram[] = {"schema_version", "tool_version", "commit",
-                                    "build_type",     "compiler",     "abi_tag",
-                                    "seed",           "overrides",    "campaign_cells"};
-/// Of a scenario of run.json. Where its file lay says nothing of it.
-constexpr const char* kScenario[] = {"text",    "frames",      "warmup_frames",   "width", "height",
-                                     "rate_hz", "repetitions", "flight_checksum", "equal"};
+constexpr std::string_view kProgram[] = {"schema_version", "tool_version", "commit",
+                                         "build_type",     "compiler",     "abi_tag",
+                                         "seed",           "overrides",    "campaign_cells"};
+/// Of a scenario: where its files lay says nothing of it.
+constexpr std::string_view kPlaces[] = {"file", "flight_file"};
 
 [[noreturn]] void refuse(const std::string& first, const std::string& second,
                          const std::string& field, const std::string& a, const std::string& b) {
@@ -55,17 +56,6 @@ void expect_same(const MergeInput& first, const MergeInput& other, const Json::V
     refuse(first.where(), other.where(), field, to_text(a), to_text(b));
 }
 
-/// A scenario's object by its name.
-std::map<std::string, const Json::Value*> scenarios_of(const MergeInput& input) {
-    std::map<std::string, const Json::Value*> scenarios;
-    for (const Json::Value& scenario : get_array(input.run, "scenarios", input.where())) {
-        const std::string name = get_string(scenario, "name", input.where() + ": scenarios");
-        expect_file_name(name, "scenario", input.where());
-        scenarios.emplace(name, &scenario);
-    }
-    return scenarios;
-}
-
 /// Of the first cell that has it: its value, and where.
 struct Origin {
     std::string value, where;
@@ -81,14 +71,9 @@ void expect_one(std::map<std::string, Origin>& known, const std::string& key,
 }
 
 /// Of run.json, and of what a merged one keeps of others.
-void check_shard(const Json::Value& context, const std::string& where) {
-    expect_field(context.isObject(), where, "shards", "a list of objects");
-    const Json::Value& shard = context["shard"];
-    if (shard.isNull()) return;
-    for (const char* key : {"number", "count"}) {
-        expect_field(member_of(shard, key).isInt() && member_of(shard, key).asInt() > 0, where,
-                     "shard", "an object with the whole numbers 'number' and 'count'");
-    }
+void check_shard(const RunRecord& run, const std::string& where) {
+    expect_field(!run.shard || (run.shard->number > 0 && run.shard->count > 0), where, "shard",
+                 "an object with 'number' and 'count' above 0");
 }
 
 void read_finished(MergeInput& input) {
@@ -136,8 +121,7 @@ std::string name_without_device(const CellRecord& cell) {
 }
 
 int MergeInput::shard() const {
-    const Json::Value& number = member_of(run, "shard", "number");
-    return number.isInt() ? number.asInt() : 0;
+    return run.shard ? run.shard->number : 0;
 }
 
 MergeInput read_merge_input(const fs::path& folder) {
@@ -151,51 +135,49 @@ MergeInput read_merge_input(const fs::path& folder) {
             (folder / "match.json").string()));
     }
     input.run = read_run(folder);
-    for (const char* key : {"cells", "scenarios", "warnings", "noise"}) {
-        (void)get_array(input.run, key, input.where());
-    }
     check_shard(input.run, input.where());
-    if (input.run.isMember("shards")) {
-        for (const Json::Value& context : get_array(input.run, "shards", input.where())) {
-            check_shard(context, input.where());
-        }
-    }
-    expect_field(input.run["campaign_cells"].isUInt64(), input.where(), "campaign_cells",
+    for (const RunRecord& part : input.run.shards) check_shard(part, input.where());
+    expect_field(input.run.campaign_cells.has_value(), input.where(), "campaign_cells",
                  "a whole number (run.json of an older version has none: merge with that one)");
-    input.checksum = checksum_of(to_text(input.run));
-    for (const Json::Value& cell : input.run["cells"]) {
-        const std::string name = get_string(cell, "id", input.where() + ": cells");
+    input.checksum = checksum_of(to_text(encode(input.run)));
+    for (PlannedRecord& cell : std::exchange(input.run.cells, {})) {
+        const std::string name = cell.id;
         expect_file_name(name, "cell", input.where());
-        expect_field(cell["place"].isUInt64(), input.where(), "cells.place", "a whole number");
-        if (!input.planned.emplace(name, cell).second) {
+        expect_field(cell.place.has_value(), input.where(), "cells.place", "a whole number");
+        if (!input.planned.emplace(name, std::move(cell)).second) {
             throw InputError(fmt::format("{}: cell '{}' is among its 'cells' twice; {}",
                                          input.where(), name, kCopyAgain));
         }
     }
-    input.run.removeMember("cells");
-    (void)scenarios_of(input);
+    for (const ScenarioContext& scenario : input.run.scenarios) {
+        expect_file_name(scenario.name, "scenario", input.where());
+    }
     read_finished(input);
     return input;
 }
 
 void expect_one_protocol(const std::vector<MergeInput>& inputs) {
-    std::map<std::string, std::pair<const Json::Value*, const MergeInput*>> scenarios;
+    std::map<std::string, std::pair<const ScenarioContext*, const MergeInput*>> scenarios;
     std::map<std::string, Origin> terrains;
     std::map<std::string, Origin> plugins;
     for (const MergeInput& input : inputs) {
         const MergeInput& first = inputs.front();
-        for (const char* field : kProgram) {
-            expect_same(first, input, first.run[field], input.run[field], field);
+        each_field<RunRecord>([&](const auto& field) {
+            if (std::ranges::count(kProgram, field.name) == 0) return;
+            expect_same(first, input, encode(first.run.*field.member),
+                        encode(input.run.*field.member), field.name);
+        });
+        for (const ScenarioContext& scenario : input.run.scenarios) {
+            const auto [known, is_new] = scenarios.try_emplace(scenario.name, &scenario, &input);
+            const auto& [other, origin] = known->second;
+            each_field<ScenarioContext>([&, other = other, origin = origin](const auto& field) {
+                if (std::ranges::count(kPlaces, field.name) > 0) return;
+                expect_same(*origin, input, encode(other->*field.member),
+                            encode(scenario.*field.member),
+                            fmt::format("scenarios.{}.{}", scenario.name, field.name));
+            });
         }
-        for (const auto& [name, scenario] : scenarios_of(input)) {
-            const auto [known, is_new] = scenarios.try_emplace(name, scenario, &input);
-            const auto& [object, origin] = known->second;
-            for (const char* field : kScenario) {
-                expect_same(*origin, input, (*object)[field], (*scenario)[field],
-                            fmt::format("scenarios.{}.{}", name, field));
-            }
-        }
-        expect_same(first, input, first.run["campaign"], input.run["campaign"],
+        expect_same(first, input, first.run.campaign, input.run.campaign,
                     "campaign, the checksum of its list of cells");
         for (const MergeInput::Cell& cell : input.cells) {
             const CellRecord& record = cell.record;

@@ -1,8 +1,6 @@
 #pragma once
 // A folder to be merged, read and checked; and whether two were flown by one protocol.
 
-#include <json/value.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "results/cell.h"
+#include "results/run_record.h"
 
 namespace lodbench::results {
 
@@ -26,11 +25,11 @@ struct MergeInput {
         std::string name;   ///< without its device
     };
     std::filesystem::path path;
-    Json::Value run;                             ///< run.json without its "cells"
-    std::map<std::string, Json::Value> planned;  ///< "cells" of run.json, by name
-    std::vector<Cell> cells;                     ///< finished
-    std::vector<std::string> warnings;           ///< what is left out
-    std::string checksum;                        ///< of run.json, for an order
+    RunRecord run;                                 ///< without its cells
+    std::map<std::string, PlannedRecord> planned;  ///< its cells, by name
+    std::vector<Cell> cells;                       ///< finished
+    std::vector<std::string> warnings;             ///< what is left out
+    std::string checksum;                          ///< of run.json, for an order
 
     /// Of run.json, for messages.
     [[nodiscard]] std::string where() const { return (path / "run.json").string(); }

@@ -29,6 +29,12 @@ Json::Value encode(const std::string& value) {
     return text_or_null(value);
 }
 
+Json::Value encode(const TextMap& texts) {
+    Json::Value json = Json::objectValue;
+    for (const auto& [name, text] : texts) json[name] = text;
+    return json;
+}
+
 Json::Value encode(const Params& params) {
     Json::Value json = Json::objectValue;
     for (const auto& [name, value] : params.values()) {
@@ -71,6 +77,13 @@ void decode(const Json::Value& json, double& value, const Place& place) {
 void decode(const Json::Value& json, std::string& value, const Place& place) {
     place.expect(json.isString(), "text");
     value = json.asString();
+}
+
+void decode(const Json::Value& json, TextMap& texts, const Place& place) {
+    place.expect(json.isObject(), "an object");
+    for (auto value = json.begin(); value != json.end(); ++value) {
+        decode(*value, texts[value.name()], place.inside(value.name().c_str()));
+    }
 }
 
 void decode(const Json::Value& json, Params& params, const Place& place) {

@@ -6,6 +6,7 @@
 #include <json/value.h>
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@
 #include "results/json.h"
 
 namespace lodbench::results {
+
+/// Texts by name.
+using TextMap = std::map<std::string, std::string>;
 
 /// Where a value stands, for messages: the file (and line), and the names that lead to it.
 struct Place {
@@ -39,6 +43,7 @@ struct Place {
 [[nodiscard]] Json::Value encode(std::uint64_t value);
 [[nodiscard]] Json::Value encode(double value);
 [[nodiscard]] Json::Value encode(const std::string& value);
+[[nodiscard]] Json::Value encode(const TextMap& value);
 [[nodiscard]] Json::Value encode(const Params& value);
 [[nodiscard]] Json::Value encode(const Counters& value);
 
@@ -48,6 +53,7 @@ void decode(const Json::Value& json, int& value, const Place& place);
 void decode(const Json::Value& json, std::uint64_t& value, const Place& place);
 void decode(const Json::Value& json, double& value, const Place& place);
 void decode(const Json::Value& json, std::string& value, const Place& place);
+void decode(const Json::Value& json, TextMap& value, const Place& place);
 void decode(const Json::Value& json, Params& value, const Place& place);
 void decode(const Json::Value& json, Counters& value, const Place& place);
 

@@ -2,13 +2,12 @@
 // A campaign: its cells one after the other, each in a process of its own, and what is on disk at
 // any moment.
 
-#include <json/value.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "results/cell.h"
+#include "results/run_record.h"
 #include "run/plan.h"
 
 namespace lodbench::run {
@@ -31,9 +30,9 @@ public:
     virtual void cooling_down(double /*left_s*/) {}
     virtual void cell_finished(const PlannedCell& /*cell*/, std::size_t /*index*/,
                                std::size_t /*count*/, const results::CellRecord& /*record*/) {}
-    /// The text of summary.md, asked for at the end; `run` is the object of run.json.
+    /// The text of summary.md, asked for at the end.
     [[nodiscard]] virtual std::string summary(const CampaignOutcome& /*outcome*/,
-                                              const Json::Value& /*run*/) {
+                                              const results::RunRecord& /*run*/) {
         return {};
     }
 };
@@ -43,7 +42,7 @@ struct CampaignOutcome {
     std::vector<results::CellRecord> cells;  ///< all that stand in cells.jsonl
     std::vector<std::string> warnings;
     std::uint64_t seed = 1;
-    Json::Value run;              ///< the object of run.json
+    results::RunRecord run;
     bool nothing_to_fly = false;  ///< a shard without a block: there are more shards than blocks
     std::string error;            ///< why it ended early (a full disk); "" when it did not
     /// 0, 3 or 4, as docs/manual.md says.

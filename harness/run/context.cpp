@@ -88,23 +88,21 @@ std::optional<double> load_average() {
     return load;
 }
 
-std::vector<std::string> noise_of(const Json::Value& machine) {
+std::vector<std::string> noise_of(const results::MachineContext& machine) {
     std::vector<std::string> texts;
-    const Json::Value& cores = machine["cores"];
-    if (cores.isNull()) return texts;
-    const Json::Value& quota = machine["cpu_quota_cores"];
-    if (!quota.isNull() && quota.asDouble() < cores.asDouble()) {
+    if (!machine.cores) return texts;
+    const int cores = *machine.cores;
+    if (machine.cpu_quota_cores && *machine.cpu_quota_cores < cores) {
         texts.push_back(
             fmt::format("the CPU quota of this process's control group is {:.3g} of its {} cores: "
                         "times hold pauses that the system imposes; lift the quota to compare them",
-                        quota.asDouble(), cores.asInt()));
+                        *machine.cpu_quota_cores, cores));
     }
-    const Json::Value& load = machine["load_average"];
-    if (!load.isNull() && load.asDouble() > cores.asDouble()) {
+    if (machine.load_average && *machine.load_average > cores) {
         texts.push_back(fmt::format(
             "the load average was {:.2f} on {} cores when this began: other programs took "
             "the processor's time; wait for them or end them to compare times",
-            load.asDouble(), cores.asInt()));
+            *machine.load_average, cores));
     }
     return texts;
 }
@@ -120,43 +118,39 @@ std::string utc_now_ms() {
                        now.time_since_epoch().count() % 1000);
 }
 
-Json::Value machine_context() {
-    Json::Value json;
-    json["schema_version"] = results::kSchemaVersion;
-    json["tool_version"] = LODBENCH_VERSION;
-    json["commit"] = results::text_or_null(LODBENCH_COMMIT);
-    json["build_type"] = results::text_or_null(LODBENCH_BUILD_TYPE);
-    json["compiler"] = LODBENCH_COMPILER;
-    json["abi_tag"] = kAbiTag;
+results::MachineContext machine_context() {
+    results::MachineContext machine;
+    machine.tool_version = LODBENCH_VERSION;
+    machine.commit = LODBENCH_COMMIT;
+    machine.build_type = LODBENCH_BUILD_TYPE;
+    machine.compiler = LODBENCH_COMPILER;
+    machine.abi_tag = kAbiTag;
+    machine.os = line_after("/etc/os-release", "PRETTY_NAME=", '=');
     utsname system{};
     uname(&system);
-    json["os"] = results::text_or_null(line_after("/etc/os-release", "PRETTY_NAME=", '='));
-    json["kernel"] = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
-    json["cpu"] = results::text_or_null(line_after("/proc/cpuinfo", "model name", ':'));
+    machine.kernel = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
+    machine.cpu = line_after("/proc/cpuinfo", "model name", ':');
     cpu_set_t cores;
     CPU_ZERO(&cores);
     // The cores that this process may use, which a container may have cut down.
-    json["cores"] = sched_getaffinity(0, sizeof cores, &cores) == 0 ? Json::Value(CPU_COUNT(&cores))
-                                                                    : Json::Value::null;
-    const std::optional<double> quota = cpu_quota();
-    json["cpu_quota_cores"] = quota ? Json::Value(*quota) : Json::Value::null;
-    return json;
+    if (sched_getaffinity(0, sizeof cores, &cores) == 0) machine.cores = CPU_COUNT(&cores);
+    machine.cpu_quota_cores = cpu_quota();
+    return machine;
 }
 
-std::string device_text(const results::CellResult& result, const Json::Value& machine) {
+std::string device_text(const results::CellResult& result, const results::MachineContext& machine) {
     return fmt::format("{}, OpenGL {}; {}, {} cores", result.gl_renderer, result.gl_version,
-                       results::value_text(machine["cpu"]), results::value_text(machine["cores"]));
+                       results::value_text(results::encode(machine.cpu)),
+                       results::value_text(results::encode(machine.cores)));
 }
 
-Json::Value gl_context(const results::CellResult& result) {
-    Json::Value json;
-    json["vendor"] = result.gl_vendor;
-    json["renderer"] = result.gl_renderer;
-    json["version"] = result.gl_version;
-    json["device"] = results::text_or_null(result.device_description);
-    json["software"] = result.software;
-    json["timer_verdict"] = results::text_or_null(result.cell.timer_verdict);
-    return json;
+results::GlContext gl_context(const results::CellResult& result) {
+    return {.vendor = result.gl_vendor,
+            .renderer = result.gl_renderer,
+            .version = result.gl_version,
+            .device = result.device_description,
+            .timer_verdict = result.cell.timer_verdict,
+            .software = result.software};
 }
 
 }  // namespace lodbench::run

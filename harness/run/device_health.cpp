@@ -65,16 +65,6 @@ std::optional<T> growth(const std::optional<T>& from, const std::optional<T>& to
     return *to - *from;
 }
 
-Json::Value to_json(const GpuFacts& facts) {
-    Json::Value json;
-    json["name"] = results::text_or_null(facts.name);
-    json["source"] = facts.source;
-    json["pci"] = results::text_or_null(facts.pci);
-    json["max_mhz"] = results::number(facts.max_mhz);
-    json["limit_c"] = results::number(facts.limit_c);
-    return json;
-}
-
 }  // namespace
 
 std::optional<HealthFigures> health_figures(const std::vector<HealthSample>& samples,
@@ -192,8 +182,8 @@ DeviceHealth::DeviceHealth(Setup setup)
     : shared_(std::make_shared<Shared>(std::move(setup.find_gpu), setup.cpu)),
       interval_(setup.interval),
       patience_(setup.patience) {
-    cpu_context_["cpu_governor"] = results::text_or_null(setup.cpu.governor());
-    cpu_context_["cpu_max_mhz"] = results::number(setup.cpu.max_mhz());
+    cpu_context_.cpu_governor = setup.cpu.governor();
+    cpu_context_.cpu_max_mhz = setup.cpu.max_mhz();
     shared_->thread = std::thread([shared = shared_] { shared->serve(); });
 }
 
@@ -251,18 +241,17 @@ std::optional<HealthFigures> DeviceHealth::finish() {
     return figures;
 }
 
-Json::Value DeviceHealth::context() const {
-    Json::Value json = cpu_context_;
+results::HealthContext DeviceHealth::context() const {
+    results::HealthContext context = cpu_context_;
     const std::lock_guard lock(shared_->mutex);
     const bool has_gpu = shared_->gpu_known && !shared_->facts.source.empty();
-    json["gpu"] = has_gpu ? to_json(shared_->facts) : Json::Value::null;
-    json["gpu_absent"] = Json::Value::null;
+    if (has_gpu) context.gpu = shared_->facts;
     if (shared_->silent) {
-        json["gpu_absent"] = "its sensors stopped to answer";
+        context.gpu_absent = "its sensors stopped to answer";
     } else if (shared_->gpu_known && !has_gpu) {
-        json["gpu_absent"] = shared_->gpu.why_none;
+        context.gpu_absent = shared_->gpu.why_none;
     }
-    return json;
+    return context;
 }
 
 }  // namespace lodbench::run

@@ -59,13 +59,13 @@ public:
 
     /// For run.json: the GPU whose sensors are read or why there is none (null before a cell has
     /// drawn), the CPU's governor and greatest clock.
-    [[nodiscard]] Json::Value context() const;
+    [[nodiscard]] results::HealthContext context() const;
 
 private:
     struct Shared;
     std::shared_ptr<Shared> shared_;  ///< with the thread, which may outlive this
     std::chrono::milliseconds interval_, patience_;
-    Json::Value cpu_context_;
+    results::HealthContext cpu_context_;
     // Of the cell that is watched.
     enum class Phase { before, timing, after } phase_ = Phase::before;
     bool gpu_asked_ = false, near_end_ = false;

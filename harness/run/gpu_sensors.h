@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "platform/context.h"
+#include "results/run_record.h"
 #include "run/sensor_places.h"
 
 namespace lodbench::run {
 
-/// What does not change.
-struct GpuFacts {
-    std::string name;    ///< "NVIDIA H200"; of sysfs its driver and PCI identity
-    std::string source;  ///< "NVML 580.82", "amdgpu in sysfs"
-    std::string pci;     ///< "0000:3b:00.0"; "" where it is not known
-    std::optional<double> max_mhz, limit_c;
-};
+using results::GpuFacts;
 
 /// At one moment.
 struct GpuReading {

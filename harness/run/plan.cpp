@@ -53,6 +53,9 @@ std::map<std::string, MethodInfo> methods_of(const std::vector<PluginListing>& p
     return methods;
 }
 
+/// Of a cell's task: the folders and files of this machine.
+constexpr const char* kPlacesOfCell[] = {"out", "scenario_file", "scenario_origin"};
+
 /// Of one method over one scenario: more than anyone waits for, and few enough to hold.
 constexpr std::size_t kMostCells = 100'000;
 
@@ -316,42 +319,43 @@ Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plug
     return plan;
 }
 
-Json::Value plan_to_json(const Plan& plan) {
-    Json::Value cells = Json::arrayValue;
+std::vector<results::PlannedRecord> planned_records(const Plan& plan) {
+    std::vector<results::PlannedRecord> records;
     for (const PlannedCell& cell : plan.cells) {
-        Json::Value json = results::parse_json(write_spec(cell.spec), "a cell");
+        results::PlannedRecord& record = records.emplace_back();
+        record.id = cell.spec.id;
+        record.place = cell.place;
+        record.task = results::parse_json(write_spec(cell.spec), "a cell");
         // Where the results lie and where from they are read is known by whoever opens the folder.
-        for (const char* key : {"out", "scenario_file", "scenario_origin"}) json.removeMember(key);
-        json["scenario"] = cell.scenario;
-        json["place"] = Json::UInt64(cell.place);
-        cells.append(json);
+        for (const char* key : kPlacesOfCell) record.task.removeMember(key);
+        record.task["scenario"] = cell.scenario;
     }
-    return cells;
+    return records;
 }
 
-Plan plan_from_json(const Json::Value& run, const fs::path& out,
-                    const std::vector<PluginListing>& plugins) {
+Plan plan_again(const results::RunRecord& run, const fs::path& out,
+                const std::vector<PluginListing>& plugins) {
     const std::string where = (out / "run.json").string();
     Plan plan;
-    for (Json::Value json : results::get_array(run, "cells", where)) {
-        for (const char* key : {"out", "scenario_file", "scenario_origin"}) json[key] = "";
+    for (const results::PlannedRecord& record : run.cells) {
+        Json::Value task = record.task;
+        for (const char* key : kPlacesOfCell) task[key] = "";
         PlannedCell cell;
-        cell.spec = read_spec(results::to_text(json), where);
+        cell.spec = read_spec(results::to_text(task), where);
         results::expect_file_name(cell.spec.id, "cell", where);
-        cell.scenario = results::get_string(json, "scenario", where);
-        // A run of an older version is whole.
-        cell.place = json.isMember("place") ? json["place"].asUInt64() : plan.cells.size();
+        cell.scenario = results::get_string(task, "scenario", where);
+        cell.place = record.place.value_or(plan.cells.size());  // an older version's run is whole
         const MethodInfo& method = method_again(plugins, cell.spec.method);
         cell.spec.plugin = method.plugin;
         cell.params = make_params(method, cell.spec.settings, where);
         plan.cells.push_back(std::move(cell));
     }
-    for (const Json::Value& json : results::get_array(run, "scenarios", where)) {
-        const std::string name = results::get_string(json, "name", where);
+    for (const results::ScenarioContext& scenario : run.scenarios) {
+        const std::string& name = scenario.name;
         results::expect_file_name(name, "scenario", where);
         const fs::path file = out / "scenarios" / (name + ".toml");
         results::expect_plain_file(file);
-        const fs::path origin = results::get_string(json, "file", where);
+        const fs::path origin = scenario.file;
         const fs::path kept = scenario::kept_flight(file);
         if (!kept.empty()) results::expect_plain_file(kept);
         const auto cell = std::ranges::find(plan.cells, name, &PlannedCell::scenario);
@@ -369,7 +373,7 @@ Plan plan_from_json(const Json::Value& run, const fs::path& out,
                             where, cell.spec.id, cell.scenario, results::kCopyAgain));
         }
     }
-    plan.seed = run["seed"].asUInt64();
+    plan.seed = run.seed;
     return plan;
 }
 

@@ -2,13 +2,12 @@
 // What a campaign will fly: method x swept settings x scenario x repetition, in seeded random
 // order.
 
-#include <json/value.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "results/run_record.h"
 #include "run/cell.h"
 #include "run/plugin_library.h"
 #include "run/shard.h"
@@ -66,12 +65,12 @@ struct Plan {
 /// plugins that were refused), a setting that does not fit, or two scenarios of one name.
 [[nodiscard]] Plan make_plan(const RunRequest& request, const std::vector<PluginListing>& plugins);
 
-/// "cells" of run.json, and the plan again from a results folder. The plugins are found by their
+/// The cells of run.json, and the plan again from a results folder. The plugins are found by their
 /// methods among `plugins`: a path in a file is not trusted. Throws InputError for what is damaged
 /// and where a method is not found.
-[[nodiscard]] Json::Value plan_to_json(const Plan& plan);
-[[nodiscard]] Plan plan_from_json(const Json::Value& run, const std::filesystem::path& out,
-                                  const std::vector<PluginListing>& plugins);
+[[nodiscard]] std::vector<results::PlannedRecord> planned_records(const Plan& plan);
+[[nodiscard]] Plan plan_again(const results::RunRecord& run, const std::filesystem::path& out,
+                              const std::vector<PluginListing>& plugins);
 
 /// Puts the cells into their order: all of repetition 0, then 1, ..., each shuffled. The same order
 /// for the same seed on every machine.

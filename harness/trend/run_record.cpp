@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/files.h"
 #include "results/deterministic.h"
 #include "results/json.h"
 
@@ -29,47 +30,39 @@ constexpr results::CellFigure kNoisy[] = {
     of<&Cell::peak_rss_bytes>,
 };
 
-/// "" for what is no text.
-std::string text_at(const Json::Value& object, const char* key) {
-    const Json::Value& value = results::member_of(object, key);
-    return value.isString() ? value.asString() : std::string();
-}
-
-std::string id_of(const Json::Value& run) {
-    Json::Value fixed = run;
+/// Of run.json as it was written: a later version that knows more members names it no other way.
+std::string id_of(Json::Value run) {
     // What a run learns of its device and its noise once it flies.
-    for (const char* key : {"gl", "noise", "warnings"}) fixed.removeMember(key);
-    return results::checksum_of(results::to_text(fixed));
+    for (const char* key : {"gl", "noise", "warnings"}) run.removeMember(key);
+    return results::checksum_of(results::to_text(run));
 }
 
-std::string context_of(const Json::Value& run) {
-    Json::Value context = run;
-    for (const char* key : {"scenarios", "plugins", "cells"}) context.removeMember(key);
-    return results::to_text(context);
+std::string context_of(results::RunRecord run) {
+    run.scenarios.clear();
+    run.plugins.clear();
+    run.cells.clear();
+    return results::to_text(encode(run));
 }
 
 /// Overrides change what is flown, but for those of how often it is.
-std::string overrides_text(const Json::Value& run) {
-    const Json::Value& overrides = results::member_of(run, "overrides");
+std::string overrides_text(const results::RunRecord& run) {
     std::string text;
-    if (!overrides.isObject()) return text;
-    for (const std::string& key : overrides.getMemberNames()) {
-        if (key.starts_with("run.")) continue;
-        text += fmt::format(", {} = {}", key, results::value_text(overrides[key]));
+    for (const auto& [key, value] : run.overrides) {
+        if (!key.starts_with("run.")) text += fmt::format(", {} = {}", key, value);
     }
     return text;
 }
 
-std::string flight_text(const Json::Value& run, const results::CellRecord& cell) {
+std::string flight_text(const results::RunRecord& run, const results::CellRecord& cell) {
     std::string text;
-    for (const Json::Value& scenario : run["scenarios"]) {
-        if (!scenario.isObject() || text_at(scenario, "name") != cell.scenario) continue;
-        const auto number = [&](const char* key) {
-            return results::value_text(results::member_of(scenario, key));
+    if (const results::ScenarioContext* scenario = run.scenario(cell.scenario)) {
+        const auto number = [](const auto& value) {
+            return results::value_text(results::encode(value));
         };
-        text = fmt::format("{} frames of {} × {} pixels at {} Hz", number("frames"),
-                           number("width"), number("height"), number("rate_hz"));
-        const std::string recorded = text_at(scenario, "flight_checksum");
+        text = fmt::format("{} frames of {} × {} pixels at {} Hz", number(scenario->frames),
+                           number(scenario->width), number(scenario->height),
+                           number(scenario->rate_hz));
+        const std::string& recorded = scenario->flight_checksum;
         if (!recorded.empty()) text += ", recorded flight " + recorded;
     }
     return fmt::format("{}{}terrain {}{}", text, text.empty() ? "" : ", ", cell.terrain_checksum,
@@ -87,14 +80,14 @@ std::string facts_of(const Json::Value& record) {
     return facts.empty() ? std::string() : results::to_text(facts);
 }
 
-CellEntry cell_entry(const Json::Value& run, const results::CellRecord& cell) {
+CellEntry cell_entry(const results::RunRecord& run, const results::CellRecord& cell) {
     const Json::Value record = to_json(cell);
     CellEntry entry;
     entry.series = {cell.scenario, flight_text(run, cell), cell.method,
                     results::to_text(record["params"]), ""};
     if (!cell.device.empty()) {
-        entry.series.machine =
-            fmt::format("{}; {} build", cell.device, results::value_text(run["build_type"]));
+        entry.series.machine = fmt::format("{}; {} build", cell.device,
+                                           results::value_text(results::encode(run.build_type)));
     }
     entry.name = cell.cell;
     entry.repetition = cell.repetition;
@@ -113,10 +106,12 @@ CellEntry cell_entry(const Json::Value& run, const results::CellRecord& cell) {
 
 RunEntry run_entry(const results::ResultFolder& folder) {
     RunEntry entry;
-    entry.id = id_of(folder.run);
-    entry.started = results::get_string(folder.run, "started", (folder.path / "run.json").string());
-    entry.commit = text_at(folder.run, "commit");
-    entry.tool_version = text_at(folder.run, "tool_version");
+    const std::string where = (folder.path / "run.json").string();
+    entry.id = id_of(results::parse_json(base::read_text(where), where));
+    results::expect_field(!folder.run.started.empty(), where, "started", "text");
+    entry.started = folder.run.started;
+    entry.commit = folder.run.commit;
+    entry.tool_version = folder.run.tool_version;
     entry.folder = folder.name;
     entry.context = context_of(folder.run);
     for (const results::CellRecord& cell : folder.cells) {

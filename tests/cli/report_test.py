@@ -512,7 +512,7 @@ class Report(unittest.TestCase):
         self.assertIn("no cell is finished", text)
 
     def test_a_run_that_is_not_finished_says_so(self):
-        folder = write_folder(self.root / "run", [cell("a__r0")], run={"cells": [{}, {}, {}]})
+        folder = write_folder(self.root / "run", [cell("a__r0")], run={"cells": [{"id": f"{name}__r0"} for name in "abc"]})
         with open(folder / "cells.jsonl", "a") as stream:
             stream.write('{"cell": "b')
         _, text = self.make(folder)

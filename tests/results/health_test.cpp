@@ -137,8 +137,7 @@ TEST(Health, stands_beside_the_tables_unfolded_and_discards_nothing) {
     hot.gpu_throttle = {"hw_thermal_slowdown"};
     std::vector<CellRecord> cells = {cell(0, healthy()), cell(1, hot)};
     for (CellRecord& one : cells) one.fps = 100;
-    Json::Value run;
-    run["seed"] = 1;
+    const RunRecord run;
     const std::string words =
         "m, demo, repetition 1: the GPU was held below its clock (hw\\_thermal\\_slowdown)";
     const std::string summary = report::summary_text(cells, {}, run);

@@ -137,8 +137,8 @@ TEST(Merge, of_any_partition_in_any_order_gives_every_cell_once_and_changes_no_i
             EXPECT_TRUE(fs::exists(out / "shots" / (cell.record.cell + "__f00000.png")));
             EXPECT_TRUE(fs::exists(out / "logs" / (cell.record.cell + ".log")));
         }
-        EXPECT_EQ(folder.run["shards"].size(), unsigned(count));
-        EXPECT_EQ(folder.run["cpu"].asString(), "processor") << "alike in all";
+        EXPECT_EQ(folder.run.shards.size(), std::size_t(count));
+        EXPECT_EQ(folder.run.cpu, "processor") << "alike in all";
     }
 }
 
@@ -231,21 +231,20 @@ TEST_F(TwoShards, that_were_disturbed_alike_share_a_line_for_each_device_with_th
     };
     write_noise(a, "9.50");
     write_noise(b, "17.25");
-    const Json::Value noise = merge({a, b}, out).run["noise"];
-    ASSERT_EQ(noise.size(), 1U) << noise;
+    const std::vector<std::string> noise = merge({a, b}, out).run.noise;
+    ASSERT_EQ(noise.size(), 1U);
     EXPECT_EQ(noise[0], "the load average was 9.50 to 17.25 on 8 cores");
     FakeCampaign other = campaign;
     other.device = "renderer B, OpenGL 4.6; processor, 8 cores";
     const fs::path c = scratch.path() / "c";
     other.write(c, other.cells(5), other.cells(5), 1, 1);
     write_noise(c, "12.00");
-    const Json::Value both = merge({a, b, c}, scratch.path() / "both").run["noise"];
-    ASSERT_EQ(both.size(), 2U) << both;
+    const std::vector<std::string> both = merge({a, b, c}, scratch.path() / "both").run.noise;
+    ASSERT_EQ(both.size(), 2U);
     EXPECT_EQ(both[0],
               "on renderer A; processor, 8 cores: the load average was 9.50 to 17.25 on 8 cores");
     EXPECT_EQ(both[1], "on renderer B; processor, 8 cores: the load average was 12.00 on 8 cores");
-    EXPECT_EQ(merge({out, c}, scratch.path() / "again").run["noise"], both)
-        << "merged in two steps";
+    EXPECT_EQ(merge({out, c}, scratch.path() / "again").run.noise, both) << "merged in two steps";
 }
 
 TEST_F(TwoShards, over_another_terrain_or_with_another_plugin_are_refused) {
@@ -290,7 +289,7 @@ TEST_F(TwoShards, that_are_damaged_are_refused_by_file) {
     spoil_run([](Json::Value& run) { run["cells"].removeIndex(0, nullptr); });
     EXPECT_THAT(refused(), HasSubstr("is not among the 'cells' of"));
     spoil_run([](Json::Value& run) { run["shard"]["number"] = "x"; });
-    EXPECT_THAT(refused(), HasSubstr("'shard' is not an object with"));
+    EXPECT_THAT(refused(), HasSubstr("'shard.number' is not a whole number"));
     fs::remove_all(b);
     EXPECT_THAT(refused(), HasSubstr("b/run.json: there is no such file"));
 }

@@ -13,6 +13,7 @@
 #include "base/files.h"
 #include "results/cell.h"
 #include "results/frame.h"
+#include "results/run_record.h"
 
 namespace lodbench::results {
 namespace {
@@ -43,7 +44,7 @@ public:
         each_field<Record>([&](const auto& field) {
             using Member = std::remove_cvref_t<decltype(std::declval<Record>().*field.member)>;
             using Item = typename ItemOf<Member>::Type;
-            if constexpr (IsRecord<Item>) {
+            if constexpr (IsRecord<Item> && !std::is_same_v<Item, Record>) {
                 const std::type_index type(typeid(Item));
                 for (Table& table : tables_) {
                     if (table.type == type) return table.fields.push_back(field.name);
@@ -75,14 +76,17 @@ private:
 };
 
 std::string fields_text() {
-    Nested nested;
+    Nested nested, of_run;
     nested.add<CellRecord>();
+    of_run.add<RunRecord>();
     return "\n## Fields of a cell\n\n" + table_of<CellRecord>() + nested.text() +
-           "\n## Columns of a frame's row\n\n" + table_of<FrameRecord>() + "\n";
+           "\n## Columns of a frame's row\n\n" + table_of<FrameRecord>() +
+           "\n## Members of run.json\n\n" + table_of<RunRecord>() + of_run.text() + "\n";
 }
 
 TEST(ResultsPage, says_of_every_field_what_its_table_says) {
-    const std::filesystem::path file = std::filesystem::path(LODBENCH_SOURCE_DIR) / "docs/results.md";
+    const std::filesystem::path file =
+        std::filesystem::path(LODBENCH_SOURCE_DIR) / "docs/results.md";
     const std::string page = base::read_text(file);
     const std::string begin = "<!-- fields: begin -->\n";
     const std::string end = "<!-- fields: end -->\n";
@@ -99,9 +103,12 @@ TEST(ResultsPage, says_of_every_field_what_its_table_says) {
 }
 
 TEST(ResultsPage, every_field_has_a_meaning) {
-    const auto check = [](const auto& field) { EXPECT_NE(std::string(field.meaning), "") << field.name; };
+    const auto check = [](const auto& field) {
+        EXPECT_NE(std::string(field.meaning), "") << field.name;
+    };
     each_field<CellRecord>(check);
     each_field<FrameRecord>(check);
+    each_field<RunRecord>(check);
 }
 
 }  // namespace

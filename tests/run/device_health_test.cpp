@@ -75,7 +75,7 @@ TEST(DeviceHealth, sees_the_clock_fall_and_the_throttling_of_the_timing_replay) 
         "clock=1980,1980,1188 temperature=70,80,92 threshold=90 power=300000,400000 "
         "reasons=0,0x40,0");
     DeviceHealth health(setup_of(fake.places, 15ms));
-    EXPECT_TRUE(health.context()["gpu"].isNull()) << "before a cell has drawn";
+    EXPECT_FALSE(health.context().gpu) << "before a cell has drawn";
     FakeCell cell(health);
     cell.fly();
     cell.fly_on();
@@ -92,8 +92,8 @@ TEST(DeviceHealth, sees_the_clock_fall_and_the_throttling_of_the_timing_replay) 
     EXPECT_EQ(figures->gpu_limit_c, 90);
     EXPECT_EQ(figures->gpu_w->begin, 300);
     EXPECT_THAT(figures->gpu_throttle, testing::Optional(ElementsAre("hw_thermal_slowdown")));
-    EXPECT_EQ(health.context()["gpu"]["name"], "Fake GPU 1");
-    EXPECT_TRUE(health.context()["gpu_absent"].isNull());
+    EXPECT_EQ(health.context().gpu.value().name, "Fake GPU 1");
+    EXPECT_EQ(health.context().gpu_absent, "");
 }
 
 TEST(DeviceHealth, reads_seldom_and_once_more_near_the_end) {
@@ -139,11 +139,11 @@ TEST(DeviceHealth, without_sensors_is_null_and_says_why) {
     for (const std::string& name : json.getMemberNames()) {
         EXPECT_TRUE(json[name].isNull()) << name << json[name];
     }
-    const Json::Value context = health.context();
-    EXPECT_TRUE(context["gpu"].isNull());
-    EXPECT_TRUE(context["cpu_governor"].isNull());
-    EXPECT_TRUE(context["cpu_max_mhz"].isNull());
-    EXPECT_THAT(context["gpu_absent"].asString(), testing::HasSubstr("NVML does not load"));
+    const results::HealthContext context = health.context();
+    EXPECT_FALSE(context.gpu);
+    EXPECT_EQ(context.cpu_governor, "");
+    EXPECT_FALSE(context.cpu_max_mhz);
+    EXPECT_THAT(context.gpu_absent, testing::HasSubstr("NVML does not load"));
 }
 
 class Stuck final : public run::GpuSensors {
@@ -178,7 +178,7 @@ TEST(DeviceHealth, a_driver_that_does_not_answer_holds_nobody_up) {
             cell.fly_on();
             EXPECT_EQ(health.finish(), std::nullopt);
         }
-        EXPECT_EQ(health.context()["gpu_absent"], "its sensors stopped to answer");
+        EXPECT_EQ(health.context().gpu_absent, "its sensors stopped to answer");
     }
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
     answer.set_value();  // its thread ends

@@ -61,24 +61,25 @@ TEST(Noise, of_a_setting_names_the_repetitions) {
                 ElementsAre(testing::StartsWith("repetition 1: its frames")));
 }
 
-Json::Value machine(int cores, const Json::Value& quota, const Json::Value& load) {
-    Json::Value json;
-    json["cores"] = cores;
-    json["cpu_quota_cores"] = quota;
-    json["load_average"] = load;
-    return json;
+results::MachineContext machine(int cores, std::optional<double> quota,
+                                std::optional<double> load) {
+    results::MachineContext machine;
+    machine.cores = cores;
+    machine.cpu_quota_cores = quota;
+    machine.load_average = load;
+    return machine;
 }
 
 TEST(Noise, of_a_machine_is_a_quota_or_a_load_beyond_its_cores) {
     EXPECT_THAT(
-        run::noise_of(machine(2, 0.5, Json::Value::null)),
+        run::noise_of(machine(2, 0.5, std::nullopt)),
         ElementsAre(HasSubstr("the CPU quota of this process's control group is 0.5 of its 2 "
                               "cores")));
-    EXPECT_THAT(run::noise_of(machine(2, Json::Value::null, 2.5)),
+    EXPECT_THAT(run::noise_of(machine(2, std::nullopt, 2.5)),
                 ElementsAre(HasSubstr("the load average was 2.50 on 2 cores when this began")));
     EXPECT_EQ(run::noise_of(machine(2, 1.0, 3.0)).size(), 2U);
     EXPECT_THAT(run::noise_of(machine(2, 2.0, 2.0)), IsEmpty());
-    EXPECT_THAT(run::noise_of(machine(2, Json::Value::null, Json::Value::null)), IsEmpty());
+    EXPECT_THAT(run::noise_of(machine(2, std::nullopt, std::nullopt)), IsEmpty());
 }
 
 }  // namespace

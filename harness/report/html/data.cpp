@@ -34,8 +34,7 @@ ReportData arrange(const std::vector<results::ResultFolder>& folders) {
                 set.plotted = data.sets.size() <= kMostPlottedSets;
                 const auto flight = folder.flights.find(group.scenario);
                 if (flight != folder.flights.end()) set.flight = &flight->second;
-                const Json::Value& seed = folder.run["seed"];
-                if (seed.isUInt64()) set.seed = seed.asUInt64();
+                set.seed = folder.run.seed;
             }
             data.sets.back().groups.push_back(std::move(group));
         }

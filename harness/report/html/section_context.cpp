@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
+#include <string>
 
 #include "report/html/figures.h"
 #include "report/html/sections.h"
@@ -19,21 +21,25 @@ using namespace results::figures;
 
 namespace {
 
-std::string definition(const char* term, const Json::Value& value) {
-    if (value.isNull() || value.isObject() || value.isArray()) return {};
-    return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", term,
-                       escape(results::value_text(value)));
+std::string definition(const char* term, const std::string& value) {
+    if (value.empty()) return {};
+    return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", term, escape(value));
+}
+
+template <typename Number>
+std::string definition(const char* term, const std::optional<Number>& value) {
+    return value ? definition(term, fmt::format("{}", *value)) : std::string();
+}
+
+std::string count_text(std::optional<int> count) {
+    return count ? std::to_string(*count) : "-";
 }
 
 /// Each warning once; those that the run does not raise with the number of cells that do.
 std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
     std::vector<std::string> texts = folder.warnings;
-    for (const Json::Value& warning : folder.run["warnings"]) {
-        if (warning.isString()) texts.push_back(warning.asString());
-    }
-    for (const Json::Value& noise : folder.run["noise"]) {
-        if (noise.isString()) texts.push_back("noise: " + noise.asString());
-    }
+    std::ranges::copy(folder.run.warnings, std::back_inserter(texts));
+    for (const std::string& noise : folder.run.noise) texts.push_back("noise: " + noise);
     std::map<std::string, std::vector<std::string>> cells;
     for (const results::CellRecord& cell : folder.cells) {
         if (!cell.noise.empty())
@@ -62,46 +68,42 @@ std::vector<std::string> warnings_of(const results::ResultFolder& folder) {
 
 /// What one must know of the numbers before one reads them.
 std::string conditions_html(const results::ResultFolder& folder) {
-    const Json::Value& run = folder.run;
-    const Json::Value& gl = run["gl"];
+    const results::RunRecord& run = folder.run;
+    const results::GlContext gl = run.gl.value_or(results::GlContext());
     std::string html = "<dl class=\"conditions\">\n";
     html += definition("Results", folder.name);
-    const Json::Value& software = results::member_of(gl, "software");
-    const std::string renderer = results::value_text(results::member_of(gl, "renderer"));
-    html += definition("Renderer", software.isBool() && software.asBool()
-                                       ? renderer +
+    html += definition("Renderer", gl.software.value_or(false)
+                                       ? gl.renderer +
                                              ", in software: times compare methods on this "
                                              "machine, no more"
-                                       : renderer);
-    html += definition("Timer", results::member_of(gl, "timer_verdict"));
-    html += definition("CPU", run["cpu"]);
+                                       : gl.renderer);
+    html += definition("Timer", gl.timer_verdict);
+    html += definition("CPU", run.cpu);
     if (const auto devices = results::devices_of(folder.cells); devices.size() > 1) {
         for (const std::string& device : devices) html += definition("Device", device);
     }
-    html += definition("lodbench", fmt::format("{}, {}", results::value_text(run["tool_version"]),
-                                               results::value_text(run["commit"])));
+    html += definition(
+        "lodbench", fmt::format("{}, {}", run.tool_version, run.commit.empty() ? "-" : run.commit));
     return html + "</dl>\n";
 }
 
 std::string machine_html(const results::ResultFolder& folder) {
-    const Json::Value& run = folder.run;
-    const Json::Value& gl = run["gl"];
+    const results::RunRecord& run = folder.run;
+    const results::GlContext gl = run.gl.value_or(results::GlContext());
+    const results::HealthContext health = run.health.value_or(results::HealthContext());
     std::string html = "<dl class=\"conditions\">\n";
-    html += definition("Command", run["command_line"]);
-    html += definition("Seed", run["seed"]);
-    html += definition("System", run["os"]);
-    html += definition("Kernel", run["kernel"]);
-    html += definition("Cores", run["cores"]);
-    html += definition("OpenGL", results::member_of(gl, "version"));
-    html += definition("Device", results::member_of(gl, "device"));
-    const Json::Value& health = run["health"];
-    const Json::Value& gpu = results::member_of(health, "gpu");
-    html += definition("GPU's sensors", gpu.isObject() ? results::member_of(gpu, "source")
-                                                       : results::member_of(health, "gpu_absent"));
-    html += definition("CPU governor", results::member_of(health, "cpu_governor"));
-    html += definition("Cool-down, s", run["cool_down_s"]);
-    html += definition("Build", run["build_type"]);
-    html += definition("Compiler", run["compiler"]);
+    html += definition("Command", run.command_line);
+    html += definition("Seed", std::to_string(run.seed));
+    html += definition("System", run.os);
+    html += definition("Kernel", run.kernel);
+    html += definition("Cores", run.cores);
+    html += definition("OpenGL", gl.version);
+    html += definition("Device", gl.device);
+    html += definition("GPU's sensors", health.gpu ? health.gpu->source : health.gpu_absent);
+    html += definition("CPU governor", health.cpu_governor);
+    html += definition("Cool-down, s", run.cool_down_s);
+    html += definition("Build", run.build_type);
+    html += definition("Compiler", run.compiler);
     return html + "</dl>\n";
 }
 
@@ -154,25 +156,19 @@ void add_context(Page& page, const ReportData& data) {
     for (const results::ResultFolder& folder : *data.folders) {
         if (data.folders->size() > 1) page.heading(3, folder.name);
         page.raw(machine_html(folder));
-        for (const Json::Value& scenario : folder.run["scenarios"]) {
-            if (!scenario.isObject()) continue;
-            page.open_details(fmt::format(
-                "Scenario {}, as its file says; flown were {} frames of {} × {} pixels",
-                results::value_text(scenario["name"]), results::value_text(scenario["frames"]),
-                results::value_text(scenario["width"]), results::value_text(scenario["height"])));
-            page.raw("<pre tabindex=\"0\">" + escape(results::value_text(scenario["text"])) +
-                     "</pre>\n");
+        for (const results::ScenarioContext& scenario : folder.run.scenarios) {
+            page.open_details(
+                fmt::format("Scenario {}, as its file says; flown were {} frames of {} × {} pixels",
+                            scenario.name, count_text(scenario.frames), count_text(scenario.width),
+                            count_text(scenario.height)));
+            page.raw("<pre tabindex=\"0\">" + escape(scenario.text) + "</pre>\n");
             page.close_details();
         }
-        Json::Value run = folder.run;
-        run.removeMember("cells");
-        if (run["scenarios"].isArray()) {
-            for (Json::Value& scenario : run["scenarios"]) {
-                if (scenario.isObject()) scenario.removeMember("text");
-            }
-        }
+        results::RunRecord run = folder.run;
+        run.cells.clear();
+        for (results::ScenarioContext& scenario : run.scenarios) scenario.text.clear();
         page.open_details("run.json");
-        page.raw("<pre tabindex=\"0\">" + escape(results::to_text(run, true)) + "</pre>\n");
+        page.raw("<pre tabindex=\"0\">" + escape(results::to_text(encode(run), true)) + "</pre>\n");
         page.paragraph(
             "Without the list of planned cells and the scenarios' text, which stands above.",
             "note");
