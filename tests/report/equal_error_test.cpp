@@ -95,12 +95,15 @@ TEST_F(EqualError, rows_stand_by_rising_time_those_at_another_error_last_and_mar
 TEST_F(EqualError, what_is_off_is_said_with_the_reason_that_is_known) {
     const std::vector<results::CellRecord> cells = {cell("a", 30, 2), cell("c", 5, 3)};
     EXPECT_THAT(text(cells),
-                HasSubstr("- c shows 3 px: the kept value of the knob gives another error here"));
+                AllOf(HasSubstr("- c shows 3 px: the value of the knob that the scenario keeps, or "
+                                "the method's default where it keeps none, gives another error"),
+                      HasSubstr("`lodbench match` finds the one that meets it.\n")));
     flight_.off["c"] = "its grid ends there";
     EXPECT_THAT(text(cells), HasSubstr("- c shows 3 px: its grid ends there.\n"));
     flight_.as_kept = false;
     EXPECT_THAT(text(cells),
-                AllOf(HasSubstr("- c shows 3 px: the kept values of the knobs are for"),
+                AllOf(HasSubstr("- c shows 3 px: what the scenario keeps is for the flight as it"),
+                      HasSubstr("keeps no value flies at its default; `lodbench match` finds"),
                       Not(HasSubstr("grid"))));
     EXPECT_THAT(text({cell("a", 30, 2), cell("other", 5, 3)}),
                 HasSubstr("- other shows 3 px: it has no knob to set."));
