@@ -249,6 +249,20 @@ std::vector<std::string> equal_words(const EqualFlight& flight, const std::vecto
     return lines;
 }
 
+std::optional<std::string> match_words(const results::MatchTarget& target,
+                                       const std::vector<results::CellGroup>& groups,
+                                       const std::map<std::string, std::string>& knobs) {
+    if (target.quantity != results::MatchTarget::Quantity::pixel_error ||
+        target.metric != results::ErrorMetric::p999 || groups.empty()) {
+        return std::nullopt;
+    }
+    EqualFlight flight;
+    flight.scenario = groups.front().scenario;
+    flight.error_px = target.value;
+    flight.tolerance = target.tolerance;
+    return verdict(flight, equal_rows(flight, groups, knobs));
+}
+
 std::string equal_text(const EqualFlight& flight, const std::vector<results::CellRecord>& cells,
                        const std::map<std::string, std::string>& knobs) {
     std::map<std::string, std::vector<results::CellGroup>> comparisons;
