@@ -125,7 +125,7 @@ void refuse_other_content(const std::filesystem::path& file) {
 }
 
 struct Format {
-    std::string_view extension;  ///< in lower case
+    std::string_view extension;  ///< in lower case, with its point
     RasterRoute route;
     /// Raw heights, which may begin with any bytes; else a file that begins as something else does
     /// is refused with words on what it is.
@@ -134,15 +134,15 @@ struct Format {
 
 /// The one list of what is read. A TIFF is GDAL's where it says more than an image does.
 constexpr std::array kFormats = {
-    Format{"hgt", RasterRoute::gdal},       Format{"asc", RasterRoute::gdal},
-    Format{"dem", RasterRoute::gdal},       Format{"dt0", RasterRoute::gdal},
-    Format{"dt1", RasterRoute::gdal},       Format{"dt2", RasterRoute::gdal},
-    Format{"img", RasterRoute::gdal},       Format{"bil", RasterRoute::gdal, true},
-    Format{"flt", RasterRoute::gdal, true}, Format{"tif", RasterRoute::oiio},
-    Format{"tiff", RasterRoute::oiio},      Format{"png", RasterRoute::oiio},
-    Format{"exr", RasterRoute::oiio},       Format{"pgm", RasterRoute::pgm},
-    Format{"raw", RasterRoute::raw, true},  Format{"r16", RasterRoute::raw, true},
-    Format{"bin", RasterRoute::raw, true},
+    Format{".hgt", RasterRoute::gdal},       Format{".asc", RasterRoute::gdal},
+    Format{".dem", RasterRoute::gdal},       Format{".dt0", RasterRoute::gdal},
+    Format{".dt1", RasterRoute::gdal},       Format{".dt2", RasterRoute::gdal},
+    Format{".img", RasterRoute::gdal},       Format{".bil", RasterRoute::gdal, true},
+    Format{".flt", RasterRoute::gdal, true}, Format{".tif", RasterRoute::oiio},
+    Format{".tiff", RasterRoute::oiio},      Format{".png", RasterRoute::oiio},
+    Format{".exr", RasterRoute::oiio},       Format{".pgm", RasterRoute::pgm},
+    Format{".raw", RasterRoute::raw, true},  Format{".r16", RasterRoute::raw, true},
+    Format{".bin", RasterRoute::raw, true},
 };
 
 /// Throws InputError for an extension that is not in the list, and for other content.
@@ -150,14 +150,11 @@ const Format& format_of(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return char(std::tolower(c)); });
-    const auto named = [&](const Format& format) {
-        return !extension.empty() && format.extension == extension.substr(1);
-    };
-    const auto* const format = std::ranges::find_if(kFormats, named);
+    const auto* const format = std::ranges::find(kFormats, extension, &Format::extension);
     if (format == kFormats.end() || !format->any_bytes) refuse_other_content(file);
     if (format != kFormats.end()) return *format;
     std::vector<std::string_view> known;
-    for (const Format& each : kFormats) known.push_back(each.extension);
+    for (const Format& each : kFormats) known.push_back(each.extension.substr(1));
     throw InputError(fmt::format("{}: unknown extension '{}'; known: {}", file.string(), extension,
                                  fmt::join(known, ", ")));
 }
@@ -177,7 +174,7 @@ RasterRoute raster_route(const std::filesystem::path& file) {
         throw InputError(fmt::format("{}: cannot be opened for reading", file.string()));
     }
     const Format& format = format_of(file);
-    const bool is_tiff = format.extension.starts_with("tif");
+    const bool is_tiff = format.extension.starts_with(".tif");
     return is_tiff && (TiffTags(file).ask_for_gdal() || says_more_beside(file)) ? RasterRoute::gdal
                                                                                 : format.route;
 }
