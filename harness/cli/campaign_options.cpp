@@ -83,8 +83,8 @@ void CampaignOptions::add_request(CLI::App& command) {
 void CampaignOptions::add_manner(CLI::App& command) {
     add_plugin_dirs(command, request.plugin_dirs);
     add_overrides(command, request.overrides);
-    add_override(command, request.overrides, "--repeat", "run.repetitions",
-                 "repetitions of each cell")
+    add_override<std::int64_t>(command, request.overrides, "--repeat", "run.repetitions",
+                               "repetitions of each cell")
         ->check(CLI::Range(1, 1000));
     add_device(command, request.device);
     command

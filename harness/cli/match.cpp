@@ -17,6 +17,7 @@
 #include "cli/trade_options.h"
 #include "measure/statistics.h"
 #include "report/aligned_table.h"
+#include "report/equal_error.h"
 #include "results/json.h"
 #include "run/locations.h"
 #include "run/match.h"
@@ -131,6 +132,22 @@ std::string search_text(const results::MatchTarget& target,
     return report::aligned_table(lines) + (remarks.empty() ? "" : "\n" + remarks);
 }
 
+/// Who is fastest at the target, a line for each scenario; empty where the target is no P99.9.
+std::string verdicts(const results::MatchTarget& target,
+                     const std::vector<results::CellRecord>& cells,
+                     const std::map<std::string, std::string>& knobs) {
+    std::map<std::string, std::vector<results::CellGroup>> scenarios;
+    for (results::CellGroup& group : results::group_cells(cells)) {
+        scenarios[group.comparison()].push_back(std::move(group));
+    }
+    std::string text;
+    for (const auto& [name, groups] : scenarios) {
+        const auto words = report::match_words(target, groups, knobs);
+        if (words) text += fmt::format("\n{}: {}\n", name, *words);
+    }
+    return text;
+}
+
 int match(Options& options) {
     const results::MatchTarget target = read_target(options);
     options.require_folder_to_resume();
@@ -145,10 +162,10 @@ int match(Options& options) {
     }
     const auto rows =
         report::trade_rows(outcome.campaign.cells, knobs, target.metric, outcome.campaign.seed);
-    const std::string text =
-        fmt::format("{}, within {:.3g} %\n\n{}\n{}", target.words(), 100 * target.tolerance,
-                    search_text(target, outcome.methods, outcome.campaign.cells),
-                    report::trade_text(rows, target.metric));
+    const std::string text = fmt::format(
+        "{}, within {:.3g} %\n\n{}\n{}{}", target.words(), 100 * target.tolerance,
+        search_text(target, outcome.methods, outcome.campaign.cells),
+        report::trade_text(rows, target.metric), verdicts(target, outcome.campaign.cells, knobs));
     base::write_whole(outcome.campaign.out / "match.md", "# lodbench match\n\n" + text);
     if (options.json) {
         Json::Value object = to_json(outcome.campaign);

@@ -168,6 +168,32 @@ void print_steps(const fs::path& folder, const std::vector<std::string>& steps) 
     for (const std::string& step : steps) base::print("  {}\n", step);
 }
 
+/// Where this program is installed, or the folder that it was built in.
+fs::path prefix_of_this() {
+    return run::executable_path().parent_path().parent_path();
+}
+
+bool is_build_tree(const fs::path& folder) {
+    return fs::exists(folder / "CMakeCache.txt");
+}
+
+/// With this program's own build where that lies in this checkout, else with the preset's.
+std::vector<std::string> steps_in_tree(const std::string& id, const MethodName& name) {
+    fs::path build = fs::proximate(prefix_of_this());
+    std::vector<std::string> steps;
+    if (*build.begin() == ".." || !is_build_tree(build)) {
+        build = "build/release";
+        steps.emplace_back("cmake --preset release");
+    }
+    const std::string program = quoted(build / "bin" / "lodbench");
+    steps.push_back(
+        fmt::format("cmake --build {} --target lodbench {}", quoted(build), name.snake_case));
+    steps.push_back(fmt::format("{} run --method {} --frames 30", program, id));
+    steps.push_back(fmt::format("{} validate {}", program,
+                                quoted(build / "plugins" / (name.snake_case + ".so"))));
+    return steps;
+}
+
 void new_method(const std::string& id, const std::string& directory) {
     const MethodName name = parse_name(id);
     refuse_id_in_use(id);
@@ -176,21 +202,15 @@ void new_method(const std::string& id, const std::string& directory) {
         const fs::path folder = fs::path("methods") / name.snake_case;
         copy_template(folder, name);
         add_to_tree(list, name);
-        print_steps(
-            folder,
-            {"cmake -S . -B build/release -DCMAKE_BUILD_TYPE=Release",
-             fmt::format("cmake --build build/release --target lodbench {}", name.snake_case),
-             fmt::format("build/release/bin/lodbench run --plugin-dir build/release/plugins "
-                         "--method {}",
-                         id)});
+        print_steps(folder, steps_in_tree(id, name));
         return;
     }
     const fs::path folder = fs::path(directory) / id;
     copy_template(folder, name);
     const fs::path program = run::executable_path();
-    fs::path prefix = program.parent_path().parent_path();
+    fs::path prefix = prefix_of_this();
     std::vector<std::string> steps;
-    if (fs::exists(prefix / "CMakeCache.txt")) {
+    if (is_build_tree(prefix)) {
         // Not an installed lodbench but the one in its build tree: find_package needs an installed
         // one.
         const fs::path build = prefix;

@@ -40,19 +40,9 @@ void add_device(CLI::App& command, std::string& device) {
                        "EGL device: number or part of its name, see `lodbench list --devices`");
 }
 
-CLI::Option* add_override(CLI::App& command, scenario::Overrides& overrides,
-                          const std::string& name, const std::string& key,
-                          const std::string& help) {
-    return command.add_option_function<std::int64_t>(
-        name,
-        [&overrides, name, key](std::int64_t value) {
-            overrides.set(key, fmt::format("{}", value), fmt::format("{} {}", name, value));
-        },
-        help);
-}
-
 void add_overrides(CLI::App& command, scenario::Overrides& overrides) {
-    add_override(command, overrides, "--frames", "flight.frames", "frames of the flight")
+    add_override<std::int64_t>(command, overrides, "--frames", "flight.frames",
+                               "frames of the flight")
         ->check(CLI::Range(1, 1000000));
     command
         .add_option_function<std::string>(

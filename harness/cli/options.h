@@ -1,7 +1,10 @@
 #pragma once
 // The options that several commands take, so that each is called, read and refused alike.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,9 +27,19 @@ CLI::Option* add_repeated(CLI::App& command, const std::string& names, std::vect
 void add_plugin_dirs(CLI::App& command, std::vector<std::filesystem::path>& folders);
 /// --device, as for platform::Context
 void add_device(CLI::App& command, std::string& device);
-/// An option NAME whose whole number takes the place of the scenario's value at `key`.
+/// An option NAME whose value (`std::int64_t`, `double`) takes the place of the scenario's at
+/// `key`.
+template <typename Value>
 CLI::Option* add_override(CLI::App& command, scenario::Overrides& overrides,
-                          const std::string& name, const std::string& key, const std::string& help);
+                          const std::string& name, const std::string& key,
+                          const std::string& help) {
+    return command.add_option_function<Value>(
+        name,
+        [&overrides, name, key](Value value) {
+            overrides.set(key, fmt::format("{}", value), fmt::format("{} {}", name, value));
+        },
+        help);
+}
 /// --frames, --size, and --override for every other key; they throw InputError while the command
 /// line is read.
 void add_overrides(CLI::App& command, scenario::Overrides& overrides);

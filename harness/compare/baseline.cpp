@@ -18,7 +18,7 @@ namespace lodbench::compare {
 namespace fs = std::filesystem;
 using results::CellRecord;
 using results::DeterministicField;
-using Elsewhere = DeterministicField::Elsewhere;
+using results::Elsewhere;
 
 namespace {
 

@@ -14,7 +14,7 @@ namespace lodbench::compare {
 
 using results::CellRecord;
 using results::DeterministicField;
-using Elsewhere = DeterministicField::Elsewhere;
+using results::Elsewhere;
 using Cells = std::vector<const CellRecord*>;
 
 namespace {

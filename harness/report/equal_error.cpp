@@ -155,11 +155,13 @@ std::vector<std::string> off_lines(const EqualFlight& flight, const std::vector<
     if (unexplained.empty()) return lines;
     lines.push_back(fmt::format(
         "{}: {}.", list_of(unexplained),
-        flight.as_kept
-            ? "the kept value of the knob gives another error here, and `lodbench match` "
-              "finds it anew"
-            : "the kept values of the knobs are for the scenario as it is written, and "
-              "other frames, sizes or settings give other errors"));
+        flight.as_kept ? "the value of the knob that the scenario keeps, or the method's default "
+                         "where it keeps none, gives another error here; `lodbench match` finds "
+                         "the one that meets it"
+                       : "what the scenario keeps is for the flight as it is written, other "
+                         "frames, sizes or settings give other errors, and a method of which it "
+                         "keeps no value flies at its default; `lodbench match` finds the values "
+                         "for this flight"));
     return lines;
 }
 
@@ -227,6 +229,20 @@ std::vector<std::string> equal_words(const EqualFlight& flight, const std::vecto
         lines.insert(lines.end(), more.begin(), more.end());
     }
     return lines;
+}
+
+std::optional<std::string> match_words(const results::MatchTarget& target,
+                                       const std::vector<results::CellGroup>& groups,
+                                       const std::map<std::string, std::string>& knobs) {
+    if (target.quantity != results::MatchTarget::Quantity::pixel_error ||
+        target.metric != results::ErrorMetric::p999 || groups.empty()) {
+        return std::nullopt;
+    }
+    EqualFlight flight;
+    flight.scenario = groups.front().scenario;
+    flight.error_px = target.value;
+    flight.tolerance = target.tolerance;
+    return verdict(flight, equal_rows(flight, groups, knobs));
 }
 
 std::string equal_text(const EqualFlight& flight, const std::vector<results::CellRecord>& cells,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "results/cell_groups.h"
+#include "results/match.h"
 #include "results/run_record.h"
 
 namespace lodbench::report {
@@ -58,6 +59,12 @@ struct EqualRow {
 /// then what is not at that error, and which claimed bounds do not hold.
 [[nodiscard]] std::vector<std::string> equal_words(const EqualFlight& flight,
                                                    const std::vector<EqualRow>& rows);
+
+/// Of `groups` of one scenario on one device, which `match` set to one P99.9 of the pixel error: in
+/// words, who is fastest there. Nothing for another target.
+[[nodiscard]] std::optional<std::string> match_words(
+    const results::MatchTarget& target, const std::vector<results::CellGroup>& groups,
+    const std::map<std::string, std::string>& knobs);
 
 /// Markdown, readable in a terminal: heading, table and words.
 [[nodiscard]] std::string equal_text(const EqualFlight& flight,

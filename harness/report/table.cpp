@@ -17,14 +17,36 @@ namespace {
 
 constexpr const char* kAbsent = "-";
 
-std::string median(const std::vector<double>& values, const char* format, double unit = 1) {
-    const auto centre = measure::median(values);
-    return centre ? fmt::format(fmt::runtime(format), *centre / unit) : kAbsent;
-}
+/// A column after that of the methods: the median over the repetitions, or the greatest of them.
+struct TableColumn {
+    const char* title;
+    results::CellFigure figure;
+    int digits;  ///< after the point
+    double unit = 1;
+    bool greatest = false;
+};
 
-std::string greatest(const std::vector<double>& values, const char* format, double unit = 1) {
+constexpr TableColumn kColumns[] = {
+    {"median ms", of<&Cell::frame_ms, &TimeSummary::median>, 3},
+    {"P90 ms", of<&Cell::frame_ms, &TimeSummary::p90>, 3},
+    {"max ms", of<&Cell::frame_ms, &TimeSummary::max>, 3, 1, true},
+    {"triangles", of<&Cell::triangles, &CountSummary::mean>, 0},
+    {"prepare s", of<&Cell::prepare_s>, 3},
+    {"GPU MiB", of<&Cell::gpu_bytes>, 1, results::kMebibyte},
+    {"RSS MiB", of<&Cell::peak_rss_bytes>, 0, results::kMebibyte, true},
+    {"P99.9 px", of<&Cell::pixel_error_px, &ErrorFigures::p999>, 2},
+    {"max px", of<&Cell::pixel_error_px, &ErrorFigures::max>, 2},
+    {"crack px", of<&Cell::crack_pixels, &TotalAndMax::total>, 0},
+    {"pop px", of<&Cell::popping_px, &PoppingFigures::p999>, 2},
+    {"honesty", of<&Cell::bound_honesty>, 3},
+};
+
+std::string text_of(const TableColumn& column, const results::CellGroup& group) {
+    const std::vector<double> values = results::numbers_of(group, column.figure);
     if (values.empty()) return kAbsent;
-    return fmt::format(fmt::runtime(format), *std::ranges::max_element(values) / unit);
+    const double value =
+        column.greatest ? *std::ranges::max_element(values) : *measure::median(values);
+    return fmt::format("{:.{}f}", value / column.unit, column.digits);
 }
 
 std::string fps_text(const std::vector<const results::CellRecord*>& cells, std::uint64_t seed) {
@@ -57,9 +79,11 @@ private:
 }  // namespace
 
 const std::vector<std::string>& table_columns() {
-    static const std::vector<std::string> columns = {
-        "method",  "fps (range)", "median ms", "P90 ms", "max ms",   "triangles", "prepare s",
-        "GPU MiB", "RSS MiB",     "P99.9 px",  "max px", "crack px", "pop px",    "honesty"};
+    static const std::vector<std::string> columns = [] {
+        std::vector<std::string> titles = {"method", "fps (range)"};
+        for (const TableColumn& column : kColumns) titles.emplace_back(column.title);
+        return titles;
+    }();
     return columns;
 }
 
@@ -73,26 +97,8 @@ std::vector<TableRow> table_rows(const std::vector<results::CellRecord>& cells,
                      results::failures_of(group),
                      results::disagreements_of(group),
                      results::noise_of(group)};
-        const auto& good = group.good;
-        row.fields = {
-            fps_text(good, seed),
-            median(results::numbers_of(group, of<&Cell::frame_ms, &TimeSummary::median>), "{:.3f}"),
-            median(results::numbers_of(group, of<&Cell::frame_ms, &TimeSummary::p90>), "{:.3f}"),
-            greatest(results::numbers_of(group, of<&Cell::frame_ms, &TimeSummary::max>), "{:.3f}"),
-            median(results::numbers_of(group, of<&Cell::triangles, &CountSummary::mean>), "{:.0f}"),
-            median(results::numbers_of(group, of<&Cell::prepare_s>), "{:.3f}"),
-            median(results::numbers_of(group, of<&Cell::gpu_bytes>), "{:.1f}", results::kMebibyte),
-            greatest(results::numbers_of(group, of<&Cell::peak_rss_bytes>), "{:.0f}",
-                     results::kMebibyte),
-            median(results::numbers_of(group, of<&Cell::pixel_error_px, &ErrorFigures::p999>),
-                   "{:.2f}"),
-            median(results::numbers_of(group, of<&Cell::pixel_error_px, &ErrorFigures::max>),
-                   "{:.2f}"),
-            median(results::numbers_of(group, of<&Cell::crack_pixels, &TotalAndMax::total>),
-                   "{:.0f}"),
-            median(results::numbers_of(group, of<&Cell::popping_px, &PoppingFigures::p999>),
-                   "{:.2f}"),
-            median(results::numbers_of(group, of<&Cell::bound_honesty>), "{:.3f}")};
+        row.fields.push_back(fps_text(group.good, seed));
+        for (const TableColumn& column : kColumns) row.fields.push_back(text_of(column, group));
         rows.push_back(std::move(row));
     }
     return rows;

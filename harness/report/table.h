@@ -13,7 +13,7 @@ namespace lodbench::report {
 struct TableRow {
     std::string scenario;  ///< and the device where there are several
     std::string label;     ///< the method's id and the parameters that differ between its rows
-    std::vector<std::string> fields;    ///< as kTableColumns after the first
+    std::vector<std::string> fields;    ///< as table_columns() after the first
     std::vector<std::string> failures;  ///< "status: reason" of the repetitions that are not ok
     std::vector<std::string> warnings;  ///< why the figures are not to be trusted
     std::vector<std::string> noise;     ///< what disturbed the times

@@ -12,36 +12,38 @@ namespace {
 
 constexpr std::array kStatusNames = {"ok", "skipped", "failed", "crashed", "timeout"};
 
+using Frames = std::vector<FrameRecord>;
+
 /// Summary of one column of the frames; nothing unless every frame has it.
-template <auto Member>
-std::optional<measure::TimeSummary> time_summary(const std::vector<FrameRecord>& frames) {
+template <typename Value>
+void sum_up(const Frames& frames, Value FrameRecord::*column,
+            std::optional<measure::TimeSummary>& summary) {
     std::vector<double> values;
     for (const FrameRecord& frame : frames) {
-        const std::optional<double> value = frame.*Member;
-        if (!value) return std::nullopt;
+        const std::optional<double> value = frame.*column;
+        if (!value) return;
         values.push_back(*value);
     }
-    if (values.empty()) return std::nullopt;
-    return measure::summarize_times(values);
+    if (!values.empty()) summary = measure::summarize_times(values);
 }
 
 /// Of a count over those frames that have it; nothing when none has.
-template <auto Member>
-std::optional<CountSummary> count_summary(const std::vector<FrameRecord>& frames) {
+template <typename Part>
+void sum_up(const Frames& frames, std::optional<std::uint64_t> Part::*column,
+            std::optional<CountSummary>& summary) {
     double sum = 0;
     std::size_t present = 0;
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t most = 0;
     for (const FrameRecord& frame : frames) {
-        if (!(frame.*Member)) continue;
-        const std::uint64_t value = *(frame.*Member);
+        if (!(frame.*column)) continue;
+        const std::uint64_t value = *(frame.*column);
         sum += double(value);
         least = std::min(least, value);
         most = std::max(most, value);
         ++present;
     }
-    if (present == 0) return std::nullopt;
-    return CountSummary{sum / double(present), least, most};
+    if (present > 0) summary = {sum / double(present), least, most};
 }
 
 std::optional<ErrorFigures> figures_of(const measure::ErrorSummary& summary,
@@ -200,22 +202,18 @@ CellRecord finish_cell(const CellName& name, const CellResult& result, double bu
     cell.warnings.insert(cell.warnings.begin(), result.flight_warnings.begin(),
                          result.flight_warnings.end());
 
-    const std::vector<FrameRecord>& frames = result.frames;
+    const Frames& frames = result.frames;
     if (frames.empty()) return cell;
     std::vector<double> wall;
     for (const FrameRecord& frame : frames) wall.push_back(frame.wall_ms);
     cell.frames = frames.size();
     cell.fps = measure::frames_per_second(wall);
     cell.jank_ms = measure::jank_sum(wall, budget_ms);
-    cell.frame_ms = measure::summarize_times(wall);
-    cell.select_ms = time_summary<&FrameRecord::select_ms>(frames);
-    cell.submit_ms = time_summary<&FrameRecord::submit_ms>(frames);
-    cell.gpu_ms = time_summary<&FrameRecord::gpu_ms>(frames);
-    cell.cpu_ms = time_summary<&FrameRecord::cpu_ms>(frames);
-    cell.triangles = count_summary<&FrameRecord::triangles>(frames);
-    cell.triangles_nondegenerate = count_summary<&FrameRecord::triangles_nondegenerate>(frames);
-    cell.draw_calls = count_summary<&FrameRecord::draw_calls>(frames);
-    cell.uploaded_bytes = count_summary<&FrameRecord::uploaded_bytes>(frames);
+    each_field<CellRecord>([&](const auto& field) {
+        if constexpr (requires { field.source; }) {
+            sum_up(frames, field.source, cell.*field.member);
+        }
+    });
     return cell;
 }
 

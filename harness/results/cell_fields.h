@@ -190,84 +190,108 @@ struct FieldTable<HealthFigures> {
 template <>
 struct FieldTable<CellRecord> {
     using R = CellRecord;
+    using enum Elsewhere;
     static constexpr std::tuple fields{
         Field{"cell", &R::cell, "", "its name, that of its files", true},
         Field{"method", &R::method, "", "id of the method", true},
         Field{"scenario", &R::scenario, "", "name of the scenario", true},
         Field{"params", &R::params, "", "all parameters of the method, by their names", true},
         Field{"repetition", &R::repetition, "", "from 0", true},
-        Field{"seed", &R::seed, "", "of what is drawn by lot"},
+        Field{"seed", &R::seed, "", "of what is drawn by lot"}.repeats(never),
         Field{"status", &R::status, "", "ok, skipped, failed, crashed or timeout", true},
         Field{"reason", &R::reason, "",
               "why it is not ok, naming plugin and call. What a method throws is cut after 1000 "
               "bytes; of a process that died its last words are told"},
 
-        Field{"frames", &R::frames, "", "frames timed"},
+        Field{"frames", &R::frames, "", "frames timed"}.repeats(exactly),
         Field{"fps", &R::fps, "1/s", "1000 / mean frame time in ms"},
         Field{"jank_ms", &R::jank_ms, "ms",
               "sum over the frames of what goes over the scenario's budget"},
-        Field{"frame_ms", &R::frame_ms, "", "wall time of a frame"},
-        Field{"select_ms", &R::select_ms, "", "of it, selecting"},
-        Field{"submit_ms", &R::submit_ms, "", "of it, submitting"},
-        Field{"gpu_ms", &R::gpu_ms, "", "GPU time of a frame"},
-        Field{"cpu_ms", &R::cpu_ms, "", "CPU time of a frame, all threads"},
+        Field{"frame_ms", &R::frame_ms, "", "wall time of a frame"}.sums(&FrameRecord::wall_ms),
+        Field{"select_ms", &R::select_ms, "", "of it, selecting"}.sums(&FrameRecord::select_ms),
+        Field{"submit_ms", &R::submit_ms, "", "of it, submitting"}.sums(&FrameRecord::submit_ms),
+        Field{"gpu_ms", &R::gpu_ms, "", "GPU time of a frame"}.sums(&FrameRecord::gpu_ms),
+        Field{"cpu_ms", &R::cpu_ms, "", "CPU time of a frame, all threads"}.sums(
+            &FrameRecord::cpu_ms),
         Field{"triangles", &R::triangles, "",
-              "what the GPU was asked to draw in a frame, degenerates included"},
+              "what the GPU was asked to draw in a frame, degenerates included"}
+            .repeats(exactly)
+            .sums(&FrameRecord::triangles),
         Field{"triangles_nondegenerate", &R::triangles_nondegenerate, "",
               "of the captured triangles, those with an area, over the frames that are measured "
-              "(each n-th, `measure.every`)"},
-        Field{"draw_calls", &R::draw_calls, "", "of a frame"},
-        Field{"uploaded_bytes", &R::uploaded_bytes, "bytes", "of a frame"},
+              "(each n-th, `measure.every`)"}
+            .repeats(exactly)
+            .sums(&FrameRecord::triangles_nondegenerate),
+        Field{"draw_calls", &R::draw_calls, "", "of a frame"}.repeats(exactly).sums(
+            &FrameRecord::draw_calls),
+        Field{"uploaded_bytes", &R::uploaded_bytes, "bytes", "of a frame"}.repeats(exactly).sums(
+            &FrameRecord::uploaded_bytes),
 
-        Field{"truth_frames", &R::truth_frames, "", "frames measured"},
+        Field{"truth_frames", &R::truth_frames, "", "frames measured"}.repeats(exactly),
         Field{"screen_error_px", &R::screen_error_px, "",
               "over the samples of which the true or the drawn point lies in view: distance on "
-              "screen between the two. This is what a claimed bound is about"},
+              "screen between the two. This is what a claimed bound is about"}
+            .repeats(rounded),
         Field{"visible_error_px", &R::visible_error_px, "",
-              "the same over the samples that the camera sees"},
+              "the same over the samples that the camera sees"}
+            .repeats(rounded),
         Field{"pixel_error_px", &R::pixel_error_px, "",
               "over the pixels: of each drawn point against the true height there, and of each "
               "true point (a ray's) against the surface drawn there. What a viewer sees; cannot be "
-              "diluted by distant samples, or flattered by drawing nothing"},
+              "diluted by distant samples, or flattered by drawing nothing"}
+            .repeats(rounded),
         Field{"pixel_error_realtime_px", &R::pixel_error_realtime_px, "",
               "the same in the real-time replay; null for synchronous methods"},
         Field{"crack_pixels", &R::crack_pixels, "",
               "pixels that show what lies behind the surface: their ray passes below it, over "
-              "covered ground, before the part of the surface or the sky that was drawn"},
+              "covered ground, before the part of the surface or the sky that was drawn"}
+            .repeats(exactly),
         Field{"skirt_pixels", &R::skirt_pixels, "",
-              "pixels that show a skirt: their drawn point is in no pixel error"},
+              "pixels that show a skirt: their drawn point is in no pixel error"}
+            .repeats(exactly),
         Field{"uncovered_samples", &R::uncovered_samples, "",
-              "samples in view that no triangle covers"},
-        Field{"silhouette_px", &R::silhouette_px, "",
-              "per column, offset of the first terrain row"},
+              "samples in view that no triangle covers"}
+            .repeats(exactly),
+        Field{"silhouette_px", &R::silhouette_px, "", "per column, offset of the first terrain row"}
+            .repeats(rounded),
         Field{"popping_px", &R::popping_px, "",
               "how far drawn points in the later view move on screen from a frame to the next, the "
               "camera's own motion apart; over the samples that both frames have in view, for what "
-              "a turn brings in was not seen to pop"},
+              "a turn brings in was not seen to pop"}
+            .repeats(rounded),
         Field{"height_rmse_m", &R::height_rmse_m, "",
-              "root mean square of drawn minus true height over the samples in view"},
+              "root mean square of drawn minus true height over the samples in view"}
+            .repeats(rounded),
         Field{"height_rmse_whole_m", &R::height_rmse_whole_m, "",
               "the same over all samples of the terrain, out of view too, flown once more with "
-              "the method's parameter `culling` off; where `measure.whole` asks for it"},
+              "the method's parameter `culling` off; where `measure.whole` asks for it"}
+            .repeats(rounded),
         Field{"image", &R::image, "",
               "shaded picture against the full grid's. A surface without error that splits the "
-              "cells along other diagonals is shaded otherwise"},
+              "cells along other diagonals is shaded otherwise"}
+            .repeats(rounded),
         Field{"bound_honesty", &R::bound_honesty, "ratio",
-              "greatest screen error / claimed bound: above 1 the claim does not hold"},
-        Field{"clipped_segments", &R::clipped_segments, "", "errors cut at the near plane"},
+              "greatest screen error / claimed bound: above 1 the claim does not hold"}
+            .repeats(rounded),
+        Field{"clipped_segments", &R::clipped_segments, "", "errors cut at the near plane"}.repeats(
+            exactly),
         Field{"unjudged_pixels", &R::unjudged_pixels, "",
-              "pixels whose ray starts below the surface, so that a crack cannot be told"},
+              "pixels whose ray starts below the surface, so that a crack cannot be told"}
+            .repeats(exactly),
         Field{"undecided_pixels", &R::undecided_pixels, "",
               "drawn pixels in no pixel error, for they show no point of the surface that was "
               "drawn, over ground so steep that their depth leaves their error uncertain by more "
-              "than a pixel to either side"},
+              "than a pixel to either side"}
+            .repeats(exactly),
         Field{"wall_triangles", &R::wall_triangles, "",
               "upright triangles that stand above the surface, like a fence (most in a frame): "
               "without extent in plan, so in no screen error, but in the picture, so in the pixel "
-              "error and the silhouette"},
+              "error and the silhouette"}
+            .repeats(exactly),
         Field{"economy", &R::economy, "",
               "of each frame that `measure.economy` names, the triangles drawn beside those that "
-              "would have done"},
+              "would have done"}
+            .repeats(rounded),
 
         Field{"prepare_s", &R::prepare_s, "s", "preprocessing, wall time"},
         Field{"prepare_cpu_s", &R::prepare_cpu_s, "s", "preprocessing, CPU time of all threads"},
@@ -278,7 +302,8 @@ struct FieldTable<CellRecord> {
         Field{"samples_served", &R::samples_served, "",
               "height samples that the method asked for until its timing replay ended"},
         Field{"samples_prepared", &R::samples_prepared, "",
-              "of these, those that it asked for while it prepared"},
+              "of these, those that it asked for while it prepared"}
+            .repeats(exactly),
         Field{"tiles_served", &R::tiles_served, "", "tiles of which they came"},
         Field{"terrain_bytes_read", &R::terrain_bytes_read, "bytes",
               "read from the terrain's file for that; 0 for a terrain in memory"},
@@ -289,7 +314,8 @@ struct FieldTable<CellRecord> {
               "the method's own figures in the lockstep replay: means over its frames or, where "
               "the name ends in `_so_far`, the last"},
         Field{"claimed_px", &R::claimed_px, "px",
-              "the error bound that its paper claims: a claim, neither measured nor warranted"},
+              "the error bound that its paper claims: a claim, neither measured nor warranted"}
+            .repeats(exactly),
 
         Field{"cell_s", &R::cell_s, "s",
               "the whole cell, wall time: its process, the terrain, preprocessing, all replays and "
@@ -299,12 +325,15 @@ struct FieldTable<CellRecord> {
               "were flown in turn"},
 
         Field{"depth_hash", &R::depth_hash, "",
-              "of the depth image at one frame, equal between replays"},
+              "of the depth image at one frame, equal between replays"}
+            .repeats(never),
         Field{"shots_hash", &R::shots_hash, "",
               "of the depth images at the frames of `shots` in lockstep: equal between "
-              "repetitions, or the tables warn"},
+              "repetitions, or the tables warn"}
+            .repeats(exactly),
         Field{"terrain", &R::terrain, "", "its name"},
-        Field{"terrain_checksum", &R::terrain_checksum, "", "of the grid as served: 16 hex digits"},
+        Field{"terrain_checksum", &R::terrain_checksum, "", "of the grid as served: 16 hex digits"}
+            .repeats(exactly),
         Field{"plugin_checksum", &R::plugin_checksum, "", "of the plugin's file: 16 hex digits"},
         Field{"device", &R::device, "",
               "what flew it: renderer and version of OpenGL, processor and cores. Times of two "

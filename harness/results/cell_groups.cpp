@@ -233,8 +233,7 @@ std::vector<double> numbers_of(const CellGroup& group, const CellFigure& figure)
     if (!values.empty() || group.measured_elsewhere.empty()) return values;
     const bool is_deterministic =
         std::ranges::any_of(deterministic_fields(), [&figure](const DeterministicField& field) {
-            return field.elsewhere != DeterministicField::Elsewhere::never &&
-                   figure.is_within(field.name);
+            return field.elsewhere != Elsewhere::never && figure.is_within(field.name);
         });
     return is_deterministic ? numbers_of(group.measured_elsewhere, figure) : values;
 }

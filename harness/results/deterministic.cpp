@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -15,64 +14,14 @@ namespace lodbench::results {
 
 namespace {
 
-using Elsewhere = DeterministicField::Elsewhere;
-
-constexpr std::array kDeterministic = {
-    DeterministicField{"seed", Elsewhere::never},
-    DeterministicField{"frames", Elsewhere::exactly},
-    DeterministicField{"triangles", Elsewhere::exactly},
-    DeterministicField{"triangles_nondegenerate", Elsewhere::exactly},
-    DeterministicField{"draw_calls", Elsewhere::exactly},
-    DeterministicField{"uploaded_bytes", Elsewhere::exactly},
-    DeterministicField{"truth_frames", Elsewhere::exactly},
-    DeterministicField{"screen_error_px", Elsewhere::rounded},
-    DeterministicField{"visible_error_px", Elsewhere::rounded},
-    DeterministicField{"pixel_error_px", Elsewhere::rounded},
-    DeterministicField{"crack_pixels", Elsewhere::exactly},
-    DeterministicField{"skirt_pixels", Elsewhere::exactly},
-    DeterministicField{"uncovered_samples", Elsewhere::exactly},
-    DeterministicField{"silhouette_px", Elsewhere::rounded},
-    DeterministicField{"popping_px", Elsewhere::rounded},
-    DeterministicField{"height_rmse_m", Elsewhere::rounded},
-    DeterministicField{"height_rmse_whole_m", Elsewhere::rounded},
-    DeterministicField{"image", Elsewhere::rounded},
-    DeterministicField{"bound_honesty", Elsewhere::rounded},
-    DeterministicField{"clipped_segments", Elsewhere::exactly},
-    DeterministicField{"unjudged_pixels", Elsewhere::exactly},
-    DeterministicField{"undecided_pixels", Elsewhere::exactly},
-    DeterministicField{"wall_triangles", Elsewhere::exactly},
-    DeterministicField{"economy", Elsewhere::rounded},
-    DeterministicField{"samples_prepared", Elsewhere::exactly},
-    DeterministicField{"claimed_px", Elsewhere::exactly},
-    DeterministicField{"depth_hash", Elsewhere::never},
-    DeterministicField{"shots_hash", Elsewhere::exactly},
-    DeterministicField{"terrain_checksum", Elsewhere::exactly},
-};
-
-constexpr std::array kColumns = {
-    DeterministicField{"triangles", Elsewhere::exactly},
-    DeterministicField{"triangles_nondegenerate", Elsewhere::exactly},
-    DeterministicField{"draw_calls", Elsewhere::exactly},
-    DeterministicField{"uploaded_bytes", Elsewhere::exactly},
-    DeterministicField{"uncovered_samples", Elsewhere::exactly},
-    DeterministicField{"crack_pixels", Elsewhere::exactly},
-    DeterministicField{"skirt_pixels", Elsewhere::exactly},
-    DeterministicField{"silhouette_pixels", Elsewhere::exactly},
-    DeterministicField{"screen_max_px", Elsewhere::rounded},
-    DeterministicField{"screen_p999_px", Elsewhere::rounded},
-    DeterministicField{"screen_rms_px", Elsewhere::rounded},
-    DeterministicField{"visible_max_px", Elsewhere::rounded},
-    DeterministicField{"visible_p999_px", Elsewhere::rounded},
-    DeterministicField{"pixel_max_px", Elsewhere::rounded},
-    DeterministicField{"pixel_p999_px", Elsewhere::rounded},
-    DeterministicField{"pixel_rms_px", Elsewhere::rounded},
-    DeterministicField{"silhouette_max_px", Elsewhere::rounded},
-    DeterministicField{"popping_max_px", Elsewhere::rounded},
-    DeterministicField{"popping_p999_px", Elsewhere::rounded},
-    DeterministicField{"height_rmse_m", Elsewhere::rounded},
-    DeterministicField{"psnr_db", Elsewhere::rounded},
-    DeterministicField{"ssim", Elsewhere::rounded},
-};
+template <IsRecord Record>
+std::vector<DeterministicField> repeating_fields() {
+    std::vector<DeterministicField> repeating;
+    each_field<Record>([&](const auto& field) {
+        if (field.same_elsewhere) repeating.push_back({field.name, *field.same_elsewhere});
+    });
+    return repeating;
+}
 
 bool within_rounding(double a, double b) {
     const double unit = std::max({std::abs(a), std::abs(b), 1.0});
@@ -90,11 +39,13 @@ struct Difference {
 }  // namespace
 
 std::span<const DeterministicField> deterministic_fields() {
-    return kDeterministic;
+    static const std::vector<DeterministicField> fields = repeating_fields<CellRecord>();
+    return fields;
 }
 
 std::span<const DeterministicField> deterministic_columns() {
-    return kColumns;
+    static const std::vector<DeterministicField> columns = repeating_fields<FrameRecord>();
+    return columns;
 }
 
 bool agree(const Json::Value& a, const Json::Value& b, Elsewhere elsewhere, bool one_device) {
@@ -116,7 +67,7 @@ std::vector<std::string> deterministic_differences(const CellRecord& a, const Ce
     const Json::Value left = to_json(a);
     const Json::Value right = to_json(b);
     std::vector<std::string> names;
-    for (const DeterministicField& field : kDeterministic) {
+    for (const DeterministicField& field : deterministic_fields()) {
         if (left[field.name] != right[field.name]) names.emplace_back(field.name);
     }
     return names;
@@ -130,7 +81,7 @@ std::vector<std::string> device_differences(const std::vector<CellRecord>& cells
         Json::Value& figures = settings[{group.scenario, group.label}][group.device];
         for (const CellRecord* cell : group.good) {
             const Json::Value json = to_json(*cell);
-            for (const DeterministicField& field : kDeterministic) {
+            for (const DeterministicField& field : deterministic_fields()) {
                 if (figures[field.name].isNull()) figures[field.name] = json[field.name];
             }
         }
@@ -139,7 +90,7 @@ std::vector<std::string> device_differences(const std::vector<CellRecord>& cells
     for (const auto& [setting, figures] : settings) {
         const auto& [first_device, first] = *figures.begin();
         for (const auto& [device, other] : figures) {
-            for (const DeterministicField& field : kDeterministic) {
+            for (const DeterministicField& field : deterministic_fields()) {
                 const Json::Value& a = first[field.name];
                 const Json::Value& b = other[field.name];
                 if (field.elsewhere == Elsewhere::never || a.isNull() || b.isNull() ||

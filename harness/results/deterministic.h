@@ -11,14 +11,9 @@
 
 namespace lodbench::results {
 
-/// A member of a cell's record that comes out the same each time the cell is flown on one device.
+/// A field that comes out the same each time its cell is flown on one device: its table's row says
+/// `repeats`.
 struct DeterministicField {
-    /// How far another device gives the same.
-    enum class Elsewhere {
-        exactly,  ///< counts and hashes
-        rounded,  ///< measured in float32 pictures and positions: within `kDeviceRounding`
-        never     ///< says nothing of another repetition: what the cell's own seed draws
-    };
     const char* name;
     Elsewhere elsewhere;
 };
@@ -26,18 +21,17 @@ struct DeterministicField {
 /// Of the larger value, or of 1 where both are smaller: what the measuring itself is tested to.
 inline constexpr double kDeviceRounding = 1e-3;
 
-/// This is the one list of them. Not in it are times, memory, what an asynchronous method did at
-/// its own pace, and its own counters.
+/// Those of a cell, in the order of its table (results/cell_fields.h).
 [[nodiscard]] std::span<const DeterministicField> deterministic_fields();
 
-/// The same of the columns of a cell's frames (results/frame.h).
+/// Those of a cell's frames (results/frame.h).
 [[nodiscard]] std::span<const DeterministicField> deterministic_columns();
 
 /// Whether two figures, as JSON, agree: to the bit on one device, else as far as `elsewhere` says.
 /// Where the greatest error is may jump between two places that are equally wrong, which is no
 /// difference between devices.
-[[nodiscard]] bool agree(const Json::Value& a, const Json::Value& b,
-                         DeterministicField::Elsewhere elsewhere, bool one_device);
+[[nodiscard]] bool agree(const Json::Value& a, const Json::Value& b, Elsewhere elsewhere,
+                         bool one_device);
 
 /// The names of the deterministic fields in which two records differ, to the bit.
 [[nodiscard]] std::vector<std::string> deterministic_differences(const CellRecord& a,

@@ -13,6 +13,16 @@
 
 namespace lodbench::results {
 
+/// How far another device gives what comes out the same each time on one device.
+enum class Elsewhere {
+    exactly,  ///< counts and hashes
+    rounded,  ///< measured in float32 pictures and positions: within `kDeviceRounding`
+    never     ///< says nothing of another repetition: what the cell's own seed draws
+};
+
+template <typename Owner, typename T, typename Part, typename Value>
+struct SummedField;
+
 /// A member of a record: its name in JSON and CSV, its unit and what it means (Markdown).
 template <typename Owner, typename T>
 struct Field {
@@ -21,10 +31,30 @@ struct Field {
     const char* unit;  ///< "" for text, counts of what the name says, and nested records
     const char* meaning;
     bool required = false;  ///< what lacks it is refused; else what is absent was not measured
+    /// Of what does not depend on when a cell is flown; nothing for times, memory, what an
+    /// asynchronous method did at its own pace, and its own counters. See results/deterministic.h.
+    std::optional<Elsewhere> same_elsewhere = std::nullopt;
+
+    /// The same field, which comes out the same each time on one device.
+    [[nodiscard]] constexpr Field repeats(Elsewhere elsewhere) const {
+        Field field = *this;
+        field.same_elsewhere = elsewhere;
+        return field;
+    }
+    /// The same field, summed up from that member of the record's parts (a cell's frames).
+    template <typename Part, typename Value>
+    [[nodiscard]] constexpr SummedField<Owner, T, Part, Value> sums(Value Part::*source) const {
+        return {*this, source};
+    }
 };
 // Clang deduces this of an aggregate from version 17 on.
 template <typename Owner, typename T>
 Field(const char*, T Owner::*, const char*, const char*, bool = false) -> Field<Owner, T>;
+
+template <typename Owner, typename T, typename Part, typename Value>
+struct SummedField : Field<Owner, T> {
+    Value Part::*source;
+};
 
 /// Specialised for each record: `static constexpr std::tuple fields{Field{...}, ...};`
 template <typename Record>

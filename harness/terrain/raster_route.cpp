@@ -7,7 +7,9 @@
 #include <cctype>
 #include <cstdint>
 #include <fstream>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "api/error.h"
 #include "terrain/raster_reader.h"
@@ -122,8 +124,39 @@ void refuse_other_content(const std::filesystem::path& file) {
     }
 }
 
-bool one_of(std::string_view extension, std::initializer_list<std::string_view> known) {
-    return std::find(known.begin(), known.end(), extension) != known.end();
+struct Format {
+    std::string_view extension;  ///< in lower case, with its point
+    RasterRoute route;
+    /// Raw heights, which may begin with any bytes; else a file that begins as something else does
+    /// is refused with words on what it is.
+    bool any_bytes = false;
+};
+
+/// The one list of what is read. A TIFF is GDAL's where it says more than an image does.
+constexpr std::array kFormats = {
+    Format{".hgt", RasterRoute::gdal},       Format{".asc", RasterRoute::gdal},
+    Format{".dem", RasterRoute::gdal},       Format{".dt0", RasterRoute::gdal},
+    Format{".dt1", RasterRoute::gdal},       Format{".dt2", RasterRoute::gdal},
+    Format{".img", RasterRoute::gdal},       Format{".bil", RasterRoute::gdal, true},
+    Format{".flt", RasterRoute::gdal, true}, Format{".tif", RasterRoute::oiio},
+    Format{".tiff", RasterRoute::oiio},      Format{".png", RasterRoute::oiio},
+    Format{".exr", RasterRoute::oiio},       Format{".pgm", RasterRoute::pgm},
+    Format{".raw", RasterRoute::raw, true},  Format{".r16", RasterRoute::raw, true},
+    Format{".bin", RasterRoute::raw, true},
+};
+
+/// Throws InputError for an extension that is not in the list, and for other content.
+const Format& format_of(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    const auto* const format = std::ranges::find(kFormats, extension, &Format::extension);
+    if (format == kFormats.end() || !format->any_bytes) refuse_other_content(file);
+    if (format != kFormats.end()) return *format;
+    std::vector<std::string_view> known;
+    for (const Format& each : kFormats) known.push_back(each.extension.substr(1));
+    throw InputError(fmt::format("{}: unknown extension '{}'; known: {}", file.string(), extension,
+                                 fmt::join(known, ", ")));
 }
 
 }  // namespace
@@ -140,27 +173,10 @@ RasterRoute raster_route(const std::filesystem::path& file) {
     if (!std::ifstream(file, std::ios::binary).is_open()) {
         throw InputError(fmt::format("{}: cannot be opened for reading", file.string()));
     }
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return char(std::tolower(c)); });
-    // Raw heights may begin with any bytes.
-    if (!one_of(extension, {".raw", ".r16", ".bin", ".bil", ".flt"})) refuse_other_content(file);
-    if (one_of(extension,
-               {".hgt", ".asc", ".dem", ".dt0", ".dt1", ".dt2", ".img", ".bil", ".flt"})) {
-        return RasterRoute::gdal;
-    }
-    if (one_of(extension, {".tif", ".tiff"})) {
-        const bool gdal = TiffTags(file).ask_for_gdal() || says_more_beside(file);
-        return gdal ? RasterRoute::gdal : RasterRoute::oiio;
-    }
-    if (one_of(extension, {".png", ".exr"})) return RasterRoute::oiio;
-    if (extension == ".pgm") return RasterRoute::pgm;
-    if (one_of(extension, {".raw", ".r16", ".bin"})) return RasterRoute::raw;
-    throw InputError(
-        fmt::format("{}: unknown extension '{}'; known: hgt, asc, dem, dt0, dt1, dt2, img, bil, "
-                    "flt, tif, tiff, "
-                    "png, exr, pgm, raw, r16, bin",
-                    file.string(), extension));
+    const Format& format = format_of(file);
+    const bool is_tiff = format.extension.starts_with(".tif");
+    return is_tiff && (TiffTags(file).ask_for_gdal() || says_more_beside(file)) ? RasterRoute::gdal
+                                                                                : format.route;
 }
 
 const char* module_of(RasterRoute route) {

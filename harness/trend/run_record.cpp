@@ -73,7 +73,7 @@ std::string flight_text(const results::RunRecord& run, const results::CellRecord
 std::string facts_of(const Json::Value& record) {
     Json::Value facts = Json::objectValue;
     for (const results::DeterministicField& field : results::deterministic_fields()) {
-        if (field.elsewhere == results::DeterministicField::Elsewhere::never) continue;
+        if (field.elsewhere == results::Elsewhere::never) continue;
         const Json::Value& value = results::member_of(record, field.name);
         if (!value.isNull()) facts[field.name] = value;
     }

@@ -39,7 +39,7 @@ results::CellRecord cell(const std::string& method, double frame_ms, double erro
 class EqualError : public testing::Test {
 protected:
     std::string text(const std::vector<results::CellRecord>& cells) {
-        return equal_text(flight_, cells, {{"a", "tau"}, {"b", "tau"}, {"c", "tau"}});
+        return equal_text(flight_, cells, knobs_);
     }
     /// The first line below the table.
     std::string verdict(const std::vector<results::CellRecord>& cells) {
@@ -47,6 +47,7 @@ protected:
         const std::size_t begin = all.find("|\n\n") + 3;
         return all.substr(begin, all.find('\n', begin) - begin);
     }
+    const std::map<std::string, std::string> knobs_{{"a", "tau"}, {"b", "tau"}, {"c", "tau"}};
     EqualFlight flight_{
         .scenario = "alps", .error_px = 2, .tolerance = 0.1, .as_kept = true, .off = {}};
 };
@@ -95,12 +96,15 @@ TEST_F(EqualError, rows_stand_by_rising_time_those_at_another_error_last_and_mar
 TEST_F(EqualError, what_is_off_is_said_with_the_reason_that_is_known) {
     const std::vector<results::CellRecord> cells = {cell("a", 30, 2), cell("c", 5, 3)};
     EXPECT_THAT(text(cells),
-                HasSubstr("- c shows 3 px: the kept value of the knob gives another error here"));
+                AllOf(HasSubstr("- c shows 3 px: the value of the knob that the scenario keeps, or "
+                                "the method's default where it keeps none, gives another error"),
+                      HasSubstr("`lodbench match` finds the one that meets it.\n")));
     flight_.off["c"] = "its grid ends there";
     EXPECT_THAT(text(cells), HasSubstr("- c shows 3 px: its grid ends there.\n"));
     flight_.as_kept = false;
     EXPECT_THAT(text(cells),
-                AllOf(HasSubstr("- c shows 3 px: the kept values of the knobs are for"),
+                AllOf(HasSubstr("- c shows 3 px: what the scenario keeps is for the flight as it"),
+                      HasSubstr("keeps no value flies at its default; `lodbench match` finds"),
                       Not(HasSubstr("grid"))));
     EXPECT_THAT(text({cell("a", 30, 2), cell("other", 5, 3)}),
                 HasSubstr("- other shows 3 px: it has no knob to set."));
@@ -121,6 +125,25 @@ TEST_F(EqualError, nobody_wins_where_nobody_shows_the_error) {
               "No method shows the error that all were to show (99.9 % of the pixels within 2 px "
               "of the true "
               "terrain, measured), so their frame times do not compare.");
+}
+
+TEST_F(EqualError, of_a_search_for_that_error_the_winner_is_told_and_of_another_target_nothing) {
+    const std::vector<results::CellRecord> cells = {cell("a", 20, 2), cell("b", 30, 2.05),
+                                                    cell("c", 31, 3)};
+    const std::vector<results::CellGroup> groups = results::group_cells(cells);
+    results::MatchTarget target;
+    target.value = 2;
+    const auto words = match_words(target, groups, knobs_);
+    ASSERT_TRUE(words);
+    EXPECT_EQ(*words,
+              "At equal error (99.9 % of the pixels within 2 px of the true terrain, measured) a "
+              "is fastest: 20.0 ms a frame (median); the next, b, takes 30.0 ms.");
+    target.value = 10;
+    EXPECT_THAT(*match_words(target, groups, knobs_), HasSubstr("No method shows the error"));
+    target.metric = results::ErrorMetric::max;
+    EXPECT_FALSE(match_words(target, groups, knobs_));
+    target = {.quantity = results::MatchTarget::Quantity::triangles, .value = 2};
+    EXPECT_FALSE(match_words(target, groups, knobs_));
 }
 
 TEST_F(EqualError, an_error_above_a_claimed_bound_is_marked_and_said) {

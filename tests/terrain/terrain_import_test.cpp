@@ -248,10 +248,12 @@ TEST_F(Import, damaged_pgm_is_refused) {
 }
 
 TEST_F(Import, what_is_no_raster_is_refused) {
-    EXPECT_EQ(
-        refusal(source("a.vrt", "<VRTDataset/>")),
-        "a.vrt: unknown extension '.vrt'; known: hgt, asc, dem, dt0, dt1, dt2, img, bil, flt, "
-        "tif, tiff, png, exr, pgm, raw, r16, bin");
+    const std::string known = refusal(source("a.vrt", "<VRTDataset/>"));
+    EXPECT_TRUE(known.starts_with("a.vrt: unknown extension '.vrt'; known: hgt, ")) << known;
+    EXPECT_TRUE(known.find(", tiff, png, ") != known.npos) << known;
+    EXPECT_EQ(refusal(source("a.tif.gz", "\x1f\x8b\x08")),
+              "a.tif.gz: is compressed by gzip; unpack it first");
+    EXPECT_TRUE(refusal(source("a", "P5")).starts_with("a: unknown extension ''; known: "));
     TerrainSource missing;
     missing.file = folder_.path() / "missing.png";
     missing.where = "scenario.toml:4";

@@ -160,7 +160,7 @@ void add_curves(Page& page, const ReportData& data, const ResultSet& set) {
 }
 
 void add_map(Page& page, const ReportData& data, const ResultSet& set) {
-    page.heading(3, "Where it flies", set.id + "-map");
+    page.heading(3, "Flight path", set.id + "-map");
     const results::FlightRecord* flight = set.flight;
     if (flight == nullptr || flight->positions.empty()) {
         page.not_measured("these results hold no flights/" + set.scenario +

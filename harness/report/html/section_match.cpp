@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/equal_error.h"
 #include "report/html/figures.h"
 #include "report/html/sections.h"
 #include "report/html/text.h"
@@ -147,6 +148,9 @@ void add_match(Page& page, const ReportData& data, const ResultSet& set) {
                                100 * match.target.tolerance));
     page.table(search_table(set, match));
     page.table(cost_table(set, match.target));
+    if (const auto words = match_words(match.target, set.groups, quality_knobs(set.folder->run))) {
+        page.paragraph(*words);
+    }
     page.paragraph(
         "Of the methods that met the target, the second table is the fair comparison; one that did "
         "not is flown at the nearest that it reaches, and one without a knob as it is.",

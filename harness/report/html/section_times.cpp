@@ -49,7 +49,7 @@ constexpr FigureColumn kTimes[] = {
 }  // namespace
 
 void add_times(Page& page, const ReportData& data, const ResultSet& set) {
-    page.heading(3, "How even it runs", set.id + "-times");
+    page.heading(3, "Frame-time stability", set.id + "-times");
     const std::vector<std::size_t> chosen = choose_groups(set, kMostBars);
     Plot plot = bars_of(data, set, "percentiles", "Frame times", "frame time, ms", chosen);
     for (std::size_t k = 0; k < std::size(kBars); ++k) {

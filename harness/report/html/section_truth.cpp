@@ -21,7 +21,7 @@ constexpr const char* kNoTruth = "the truth was left out (--no-truth), or every 
 }  // namespace
 
 void add_honesty(Page& page, const ReportData& data, const ResultSet& set) {
-    page.heading(3, "What claimed bounds are worth", set.id + "-bounds");
+    page.heading(3, "Claimed bounds against measured error", set.id + "-bounds");
     Series series{"bound honesty"};
     std::vector<std::size_t> claiming;
     std::string silent;
