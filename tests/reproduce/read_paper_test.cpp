@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <set>
 #include <string>
 
 #include "api/error.h"
@@ -47,6 +49,25 @@ TEST(ReadPaper, every_paper_of_the_tree_is_read) {
         }
     }
     EXPECT_GE(read, 1);
+}
+
+TEST(ReadPaper, every_scenario_of_a_papers_folder_is_flown_by_one_of_its_experiments) {
+    namespace fs = std::filesystem;
+    int scenarios = 0;
+    for (const auto& entry : fs::directory_iterator(LODBENCH_SOURCE_DIR "/scenarios/papers")) {
+        if (!entry.is_directory()) continue;
+        const auto own = entry.path() / (entry.path().filename().string() + ".toml");
+        std::set<fs::path> flown;
+        for (const Experiment& experiment : read_paper(own).experiments) {
+            for (const auto& file : experiment.scenarios) flown.insert(fs::weakly_canonical(file));
+        }
+        for (const auto& file : fs::directory_iterator(entry.path())) {
+            if (file.path() == own || file.path().extension() != ".toml") continue;
+            ++scenarios;
+            EXPECT_TRUE(flown.contains(fs::weakly_canonical(file.path()))) << file.path();
+        }
+    }
+    EXPECT_GE(scenarios, 10);
 }
 
 TEST(ReadPaper, what_stands_in_the_file_is_there) {
