@@ -122,6 +122,15 @@ for_each = [{ tau = [1, 2] }, { tau = 3, k = "a" }]
     EXPECT_EQ(test.for_each[2].words(), "k=a, tau=3");
 }
 
+const std::string kFigure = R"([[figure]]
+id = "8"
+title = "Figure 8"
+column = "triangles"
+baseline = "a"
+[[figure.curve]]
+title = "a"
+)";
+
 TEST(ReadPaper, mistakes_are_told_by_line_and_remedy) {
     const std::string test = kClaim + "[[claim.test]]\n";
     const std::pair<std::string, std::string> cases[] = {
@@ -156,6 +165,21 @@ TEST(ReadPaper, mistakes_are_told_by_line_and_remedy) {
         {"[[experiment]]\nid = \"a/b\"\ndid = \"x\"\nscenarios = [\"tiny.toml\"]\n",
          "ids are 1 to 64 of"},
         {"[[experiment]]\nid = \"b\"\ndid = \"x\"\nscenarios = [\"no.toml\"]\n", "no.toml"},
+        {kClaim + "unjudged = \"why\"\n[[claim.explanation]]\nwords = \"so\"\n",
+         "write [[claim.explanation.test]]: figures decide"},
+        {test +
+             "kind = \"bound\"\nof = \"fps\"\nmost = 1\n[[claim.explanation]]\nwords = \"so\"\n"
+             "select = { experiment = \"fligth\" }\n[[claim.explanation.test]]\nkind = \"bound\"\n"
+             "of = \"fps\"\nmost = 1\n",
+         "there is no experiment \"fligth\"; did you mean flight?"},
+        {kFigure + "points = [[0.5, 1], [0.5, 2]]\n", "the parts rising from 0 to 1"},
+        {kFigure + "points = [[0, 1], [2, 2]]\n", "paper.toml:17: "},
+        {kFigure + "points = [0, 1]\n", "write a list of [part of the flight, value]"},
+        {"[[figure]]\nid = \"8\"\ntitle = \"t\"\ncolumn = \"tringles\"\n",
+         "did you mean triangles?"},
+        {"[[figure]]\nid = \"8\"\ntitle = \"t\"\ncolumn = \"fps\"\n[[figure.curve]]\ntitle = "
+         "\"a\"\n",
+         "baseline is missing"},
         {"match = { error_px = 1, triangles = 5 }\n", "write one of error_px"},
     };
     for (const auto& [rest, expected] : cases) EXPECT_THAT(refusal(rest), HasSubstr(expected));
