@@ -102,6 +102,7 @@ std::vector<PlannedPaper> plan(const std::vector<reproduce::Paper>& papers,
     std::vector<PlannedPaper> planned;
     for (const reproduce::Paper& paper : papers) {
         planned.push_back({&paper, reproduce::plan_experiments(paper, request, plugins)});
+        reproduce::check_selections(paper, reproduce::planned_evidence(planned.back().experiments));
     }
     return planned;
 }
@@ -159,6 +160,7 @@ int exit_status(const std::vector<reproduce::PaperOutcome>& outcomes, bool stric
 void write(const fs::path& out, const std::vector<reproduce::PaperOutcome>& outcomes) {
     base::write_whole(out / "reproduce.md", reproduce::to_markdown(outcomes));
     base::write_whole(out / "reproduce.html", reproduce::to_html(outcomes));
+    base::write_whole(out / "overview.md", reproduce::overview_markdown(outcomes, "reproduce.md"));
     base::write_whole(out / "verdicts.json",
                       results::to_text(reproduce::to_json(outcomes), true) + "\n");
 }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "api/error.h"
@@ -39,7 +41,8 @@ bool is_selected(const results::CellRecord& cell, const Selection& selection) {
     if (!selection.method.empty() && cell.method != selection.method) return false;
     if (!selection.scenario.empty() && cell.scenario != selection.scenario) return false;
     return std::ranges::all_of(selection.params, [&](const auto& param) {
-        return same_value(results::param_text(cell, param.first), param.second);
+        return param.second.empty() ||
+               same_value(results::param_text(cell, param.first), param.second);
     });
 }
 
@@ -88,8 +91,7 @@ std::string why_not_measured(const Figure& figure, const CellWithFrames& cell) {
 
 }  // namespace
 
-Measured Evidence::measure(const Figure& figure, const Selection& selection,
-                           const std::string& where) const {
+Evidence::Selected Evidence::select(const Selection& selection, const std::string& where) const {
     if (selection.experiment.empty()) {
         throw InputError(
             fmt::format("{}: of which experiment? Write experiment = \"...\" in a "
@@ -98,37 +100,86 @@ Measured Evidence::measure(const Figure& figure, const Selection& selection,
     }
     const auto found = experiments.find(selection.experiment);
     if (found == experiments.end()) {
-        return {std::nullopt, fmt::format("experiment {} was not flown", selection.experiment)};
+        return {.why_not = fmt::format("experiment {} was not flown", selection.experiment)};
     }
-    Cells cells;
+    Selected setting{.flown = &found->second};
     for (const results::CellRecord& cell : found->second.cells) {
-        if (is_selected(cell, selection)) cells.push_back(&cell);
+        if (!is_selected(cell, selection)) continue;
+        setting.cells.push_back(&cell);
+        setting.names.insert(selection.experiment + "/" + cell.cell);
     }
-    if (cells.empty()) return {std::nullopt, why_none(found->second, selection, where)};
-    require_one_setting(cells, selection, where);
-    const auto unusable = found->second.unusable.find(cells.front()->method);
-    if (unusable != found->second.unusable.end()) return {std::nullopt, unusable->second};
-    for (const results::CellRecord* cell : cells) {
-        if (cell->status == results::CellStatus::ok) continue;
-        return {std::nullopt,
-                fmt::format("{} {}: {}", cell->cell, name_of(cell->status), cell->reason)};
+    if (setting.cells.empty()) {
+        setting.why_not = why_none(found->second, selection, where);
+        return setting;
     }
+    require_one_setting(setting.cells, selection, where);
+    const auto unusable = found->second.unusable.find(setting.cells.front()->method);
+    if (unusable != found->second.unusable.end()) setting.why_not = unusable->second;
+    for (const results::CellRecord* cell : setting.cells) {
+        if (cell->status == results::CellStatus::ok || !setting.why_not.empty()) continue;
+        setting.why_not = fmt::format("{} {}: {}", cell->cell, name_of(cell->status), cell->reason);
+    }
+    if (!setting.why_not.empty()) setting.cells.clear();
+    return setting;
+}
+
+CellWithFrames Evidence::with_frames(const FlownExperiment& flown,
+                                     const results::CellRecord& cell) {
+    const auto frames = flown.frames.find(cell.cell);
+    return {&cell, frames == flown.frames.end() ? nullptr : &frames->second};
+}
+
+Measured Evidence::measure(const Figure& figure, const Selection& selection,
+                           const std::string& where) const {
+    Selected setting = select(selection, where);
+    Measured measured{std::nullopt, setting.why_not, std::move(setting.names)};
+    if (setting.cells.empty()) return measured;
     std::vector<double> values;
-    const auto with_frames = [&](const results::CellRecord* cell) {
-        const auto frames = found->second.frames.find(cell->cell);
-        return CellWithFrames{cell,
-                              frames == found->second.frames.end() ? nullptr : &frames->second};
-    };
-    for (const results::CellRecord* cell : cells) {
-        if (const auto value = figure.of(with_frames(cell))) values.push_back(*value);
+    for (const results::CellRecord* cell : setting.cells) {
+        if (const auto value = figure.of(with_frames(*setting.flown, *cell))) {
+            values.push_back(*value);
+        }
     }
     const auto runs = measure::run_interval(values, 1);
-    if (!runs) return {std::nullopt, why_not_measured(figure, with_frames(cells.front()))};
-    Measured measured{Interval{runs->centre, runs->low, runs->high}, {}};
+    if (!runs) {
+        measured.why_not =
+            why_not_measured(figure, with_frames(*setting.flown, *setting.cells.front()));
+        return measured;
+    }
+    measured.value = Interval{runs->centre, runs->low, runs->high};
     if (figure.is_time() && values.size() < 2) {
         measured.why_not = "a time that was measured once: repeat it to know its noise";
     }
     return measured;
+}
+
+MeasuredCurve Evidence::curve(const std::string& column, const Selection& selection,
+                              const std::string& where) const {
+    const Selected setting = select(selection, where);
+    std::vector<const std::vector<double>*> repetitions;
+    std::size_t frames = 0;
+    for (const results::CellRecord* cell : setting.cells) {
+        const results::FrameTable* table = with_frames(*setting.flown, *cell).frames;
+        const auto* values = table == nullptr ? nullptr : table->find(column);
+        if (values == nullptr) continue;
+        repetitions.push_back(values);
+        frames = std::max(frames, values->size());
+    }
+    MeasuredCurve curve{{}, setting.why_not};
+    if (repetitions.empty() && curve.why_not.empty()) {
+        curve.why_not = "its frames were not kept";
+    }
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+        std::vector<double> at;
+        for (const auto* values : repetitions) {
+            if (frame < values->size() && !std::isnan((*values)[frame])) {
+                at.push_back((*values)[frame]);
+            }
+        }
+        curve.values.push_back(
+            measure::percentile(at, 0.5).value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    return curve;
 }
 
 bool Evidence::any_in_software() const {

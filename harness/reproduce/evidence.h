@@ -2,6 +2,7 @@
 // What was flown for a paper, asked for figures of selected cells.
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,13 @@ struct FlownExperiment {
 struct Measured {
     std::optional<Interval> value;
     std::string why_not;  ///< why there is no value, or why nothing can be decided by it
+    std::set<std::string> cells = {};  ///< it is of these: "EXPERIMENT/CELL"
+};
+
+/// A column along the flight, of one setting.
+struct MeasuredCurve {
+    std::vector<double> values;  ///< a frame each, the median over the repetitions; nan: none
+    std::string why_not;         ///< why there are none
 };
 
 class Evidence {
@@ -39,7 +47,21 @@ public:
     /// that is met by several settings, or by none although its method was flown.
     [[nodiscard]] Measured measure(const Figure& figure, const Selection& selection,
                                    const std::string& where) const;
+    /// Of frames, as `measure` selects and refuses.
+    [[nodiscard]] MeasuredCurve curve(const std::string& column, const Selection& selection,
+                                      const std::string& where) const;
     [[nodiscard]] bool any_in_software() const;
+
+private:
+    struct Selected {
+        const FlownExperiment* flown = nullptr;
+        std::vector<const results::CellRecord*> cells = {};  ///< its repetitions, all ok
+        std::set<std::string> names = {};                    ///< of all that were selected
+        std::string why_not = {};                            ///< why there are no cells
+    };
+    [[nodiscard]] Selected select(const Selection& selection, const std::string& where) const;
+    [[nodiscard]] static CellWithFrames with_frames(const FlownExperiment& flown,
+                                                    const results::CellRecord& cell);
 };
 
 }  // namespace lodbench::reproduce

@@ -1,6 +1,7 @@
 // Figures of a cell, as a paper's file writes them: "fps * triangles.mean".
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -26,15 +27,14 @@ Figure::Factor read_frame_factor(const std::string& word, const std::string& whe
     const std::string column = word.substr(kFrames.size(), at - kFrames.size());
     double part = -1;
     const char* const end = word.data() + word.size();
-    const bool known = column == "wall_ms" || column == "triangles" || column == "pixel_p999_px" ||
-                       column == "popping_p999_px";
+    const bool known = std::ranges::find(frame_columns(), column) != frame_columns().end();
     const auto read = at == word.npos ? std::from_chars_result{end, std::errc::invalid_argument}
                                       : std::from_chars(word.data() + at + 1, end, part);
     if (!known || read.ec != std::errc() || read.ptr != end || !(part >= 0 && part <= 1)) {
         throw InputError(fmt::format(
-            "{}: {} is no figure of a frame; write frames.COLUMN@PART with a column of wall_ms, "
-            "triangles, pixel_p999_px, popping_p999_px and a part of the flight from 0 to 1",
-            where, base::printable(word)));
+            "{}: {} is no figure of a frame; write frames.COLUMN@PART with a column of {} and a "
+            "part of the flight from 0 to 1",
+            where, base::printable(word), fmt::join(frame_columns(), ", ")));
     }
     return {word, column == "wall_ms", false,
             [column, part](const CellWithFrames& cell) -> std::optional<double> {
@@ -60,6 +60,12 @@ Figure::Factor read_factor(const std::string& word, const std::string& where) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& frame_columns() {
+    static const std::vector<std::string> columns = {"wall_ms", "triangles", "pixel_p999_px",
+                                                     "popping_p999_px"};
+    return columns;
+}
 
 std::optional<double> Figure::of(const CellWithFrames& cell) const {
     double product = 1;

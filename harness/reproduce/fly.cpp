@@ -156,6 +156,25 @@ std::vector<PlannedExperiment> plan_experiments(const Paper& paper, const Flight
     return all;
 }
 
+Evidence planned_evidence(const std::vector<PlannedExperiment>& experiments) {
+    Evidence evidence;
+    for (const PlannedExperiment& planned : experiments) {
+        FlownExperiment& experiment = evidence.experiments[planned.experiment->id];
+        experiment = planned.outcome;
+        for (const run::PlannedCell& cell : planned.plan.cells) {
+            results::CellRecord& record = experiment.cells.emplace_back();
+            record.cell = cell.spec.id;
+            record.method = cell.spec.method;
+            record.scenario = cell.scenario;
+            record.params = cell.params;
+            record.repetition = cell.spec.repetition;
+            record.status = results::CellStatus::skipped;
+            record.reason = "not flown yet";
+        }
+    }
+    return evidence;
+}
+
 FlownExperiment fly(const PlannedExperiment& planned, const fs::path& program,
                     run::CampaignObserver& observer, run::SearchObserver& search) {
     FlownExperiment flown = planned.outcome;

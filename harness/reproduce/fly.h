@@ -43,6 +43,9 @@ struct PlannedExperiment {
     const Paper& paper, const FlightRequest& request,
     const std::vector<run::PluginListing>& plugins);
 
+/// Their cells as if none could be flown: what selects among them can be tried.
+[[nodiscard]] Evidence planned_evidence(const std::vector<PlannedExperiment>& experiments);
+
 /// Flies one, or what is missing of it. Throws as run::run_campaign and run::match, and
 /// EnvironmentError where it ended early: what was finished can be resumed.
 [[nodiscard]] FlownExperiment fly(const PlannedExperiment& planned,

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "api/error.h"
 
 namespace lodbench::reproduce {
 
@@ -46,6 +49,8 @@ Outcome of_readings(const std::vector<ReadingVerdict>& readings) {
 Measured ratio_of(const Measured& a, const Measured& b) {
     Measured result;
     result.why_not = a.why_not.empty() ? b.why_not : a.why_not;
+    result.cells = a.cells;
+    result.cells.insert(b.cells.begin(), b.cells.end());
     if (!a.value || !b.value) return result;
     result.value = ratio(*a.value, *b.value);
     if (!result.value) {
@@ -57,10 +62,18 @@ Measured ratio_of(const Measured& a, const Measured& b) {
 /// One claim under one reading.
 class Judge {
 public:
-    Judge(const Paper& paper, const Evidence& evidence, const Claim& claim, const Reading& reading)
-        : paper_(paper),
-          evidence_(evidence),
-          context_(reading.selection.completed_by(claim.selection)) {}
+    Judge(const Paper& paper, const Evidence& evidence, const Selection& selection,
+          const Reading& reading)
+        : paper_(paper), evidence_(evidence), context_(reading.selection.completed_by(selection)) {}
+
+    std::vector<Finding> findings(const std::vector<Test>& tests) const {
+        std::vector<Finding> all;
+        for (const Test& test : tests) {
+            const std::vector<Finding> found = findings(test);
+            all.insert(all.end(), found.begin(), found.end());
+        }
+        return all;
+    }
 
     std::vector<Finding> findings(const Test& test) const {
         using Kind = Test::Kind;
@@ -116,8 +129,8 @@ private:
     }
 
     static Finding decide(std::string what, const Measured& measured, const Range& range) {
-        Finding finding{std::move(what), measured.value, range.text(), Outcome::unjudged,
-                        measured.why_not};
+        Finding finding{std::move(what),   measured.value,   range.text(),
+                        Outcome::unjudged, measured.why_not, measured.cells};
         if (!measured.value) return finding;
         finding.outcome = measured.why_not.empty() ? outcome_of(range.holds(*measured.value))
                                                    : Outcome::undecided;
@@ -134,13 +147,15 @@ private:
     static std::vector<Interval> along(const Test& test, const Selection& each, Measured& whole,
                                        const MeasureAt& measure_at) {
         std::vector<Interval> values;
+        bool missing = false;
         for (const Selection& place : test.over) {
             const Measured measured = measure_at(place.completed_by(each));
             if (whole.why_not.empty()) whole.why_not = measured.why_not;
-            if (!measured.value) return {};
-            values.push_back(*measured.value);
+            whole.cells.insert(measured.cells.begin(), measured.cells.end());
+            if (!measured.value) missing = true;
+            if (!missing) values.push_back(*measured.value);
         }
-        return values;
+        return missing ? std::vector<Interval>() : values;
     }
 
     [[nodiscard]] Finding of_constant(const Test& test, const Selection& each) const {
@@ -169,6 +184,8 @@ private:
                                        step_text(before), step_text(after));
             finding.value = b.value;
             finding.reason = a.why_not.empty() ? b.why_not : a.why_not;
+            finding.cells = a.cells;
+            finding.cells.insert(b.cells.begin(), b.cells.end());
             if (a.value && b.value) {
                 finding.expected = fmt::format("{}{} {}", falling ? "<" : ">",
                                                test.strictly ? "" : "=", a.value->text());
@@ -241,6 +258,7 @@ private:
                 const TableCell cell = table_cell(table, row, column, evidence_, context_);
                 if (!cell.published) continue;
                 if (whole.why_not.empty()) whole.why_not = cell.ours.why_not;
+                whole.cells.insert(cell.ours.cells.begin(), cell.ours.cells.end());
                 if (!cell.ours.value) continue;
                 ours.push_back(*cell.ours.value);
                 theirs.push_back(Interval::exactly(*cell.published));
@@ -274,10 +292,90 @@ std::string reason_without_figures(const Claim& claim, const Evidence& evidence,
     return {};
 }
 
+std::set<std::string> cells_of(const std::vector<Finding>& findings) {
+    std::set<std::string> cells;
+    for (const Finding& finding : findings) {
+        cells.insert(finding.cells.begin(), finding.cells.end());
+    }
+    return cells;
+}
+
+std::vector<ExplanationVerdict> explain(const Paper& paper, const Evidence& evidence,
+                                        const Claim& claim, const Reading& reading,
+                                        const std::vector<Finding>& findings) {
+    const std::set<std::string> own = cells_of(findings);
+    std::vector<ExplanationVerdict> verdicts;
+    for (const Explanation& explanation : claim.explanations) {
+        ExplanationVerdict& verdict = verdicts.emplace_back();
+        verdict.explanation = &explanation;
+        verdict.findings =
+            Judge(paper, evidence, explanation.selection.value_or(claim.selection), reading)
+                .findings(explanation.tests);
+        verdict.outcome = all_of(verdict.findings);
+        const std::set<std::string> asked = cells_of(verdict.findings);
+        if (!asked.empty() && std::ranges::includes(own, asked)) {
+            throw InputError(
+                fmt::format("{}: this explanation asks only for what the claim itself flies; ask "
+                            "for flights with one thing changed",
+                            explanation.where));
+        }
+    }
+    return verdicts;
+}
+
+/// Over the flight, by the trapezoid rule.
+std::optional<double> mean_of(const CurvePair::Points& points) {
+    if (points.empty()) return std::nullopt;
+    if (points.size() == 1 || points.front().first == points.back().first) {
+        return points.front().second;
+    }
+    double area = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        area +=
+            (points[i].first - points[i - 1].first) * (points[i].second + points[i - 1].second) / 2;
+    }
+    return area / (points.back().first - points.front().first);
+}
+
+/// Ours of one curve: points along the flight, and their mean; of a rate that of the mean time.
+void add_ours(const LineFigure& figure, const MeasuredCurve& curve, CurvePair& pair) {
+    pair.why_not = curve.why_not;
+    double sum = 0;
+    for (std::size_t i = 0; i < curve.values.size(); ++i) {
+        const double value = curve.values[i];
+        if (std::isnan(value) || (figure.of_rate() && value <= 0)) continue;
+        const double at = curve.values.size() < 2 ? 0 : double(i) / double(curve.values.size() - 1);
+        pair.ours.emplace_back(at, figure.of_rate() ? 1000 / value : value);
+        sum += value;
+    }
+    if (pair.ours.empty()) return;
+    const double mean = sum / double(pair.ours.size());
+    pair.our_mean = figure.of_rate() ? 1000 / mean : mean;
+}
+
+void divide(CurvePair::Points& points, std::optional<double>& mean, std::optional<double> by) {
+    if (!by || *by == 0) {
+        points.clear();
+        mean.reset();
+        return;
+    }
+    for (auto& [at, value] : points) value /= *by;
+    if (mean) *mean /= *by;
+}
+
 }  // namespace
 
 const char* name_of(Outcome outcome) {
     return std::ranges::find(kNames, outcome, &std::pair<Outcome, const char*>::first)->second;
+}
+
+bool ReadingVerdict::explained() const {
+    return std::ranges::find(explanations, Outcome::holds, &ExplanationVerdict::outcome) !=
+           explanations.end();
+}
+
+bool Verdict::explained() const {
+    return outcome == Outcome::fails && std::ranges::all_of(readings, &ReadingVerdict::explained);
 }
 
 std::vector<Verdict> judge(const Paper& paper, const Evidence& evidence, const Setting& setting) {
@@ -290,16 +388,34 @@ std::vector<Verdict> judge(const Paper& paper, const Evidence& evidence, const S
         for (const Reading& reading : claim.readings) {
             ReadingVerdict& judged = verdict.readings.emplace_back();
             judged.reading = reading.name;
-            const Judge judge(paper, evidence, claim, reading);
-            for (const Test& test : claim.tests) {
-                const std::vector<Finding> found = judge.findings(test);
-                judged.findings.insert(judged.findings.end(), found.begin(), found.end());
-            }
+            judged.findings =
+                Judge(paper, evidence, claim.selection, reading).findings(claim.tests);
             judged.outcome = all_of(judged.findings);
+            if (judged.outcome == Outcome::fails) {
+                judged.explanations = explain(paper, evidence, claim, reading, judged.findings);
+            }
         }
         verdict.outcome = of_readings(verdict.readings);
     }
     return verdicts;
+}
+
+void check_selections(const Paper& paper, const Evidence& planned) {
+    for (const Claim& claim : paper.claims) {
+        for (const Reading& reading : claim.readings) {
+            const auto findings =
+                Judge(paper, planned, claim.selection, reading).findings(claim.tests);
+            (void)explain(paper, planned, claim, reading, findings);
+        }
+    }
+    for (const Table& table : paper.tables) {
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            for (std::size_t column = 0; column < table.columns.size(); ++column) {
+                (void)table_cell(table, row, column, planned);
+            }
+        }
+    }
+    for (const LineFigure& figure : paper.figures) (void)curve_pairs(figure, planned);
 }
 
 TableCell table_cell(const Table& table, std::size_t row, std::size_t column,
@@ -323,6 +439,25 @@ TableCell table_cell(const Table& table, std::size_t row, std::size_t column,
                           ? Measured{Interval::exactly(1), {}}
                           : ratio_of(cell.ours, measure(baseline->first, baseline->second));
     return cell;
+}
+
+std::vector<CurvePair> curve_pairs(const LineFigure& figure, const Evidence& evidence) {
+    std::vector<CurvePair> pairs;
+    for (const LineFigure::Curve& curve : figure.curves) {
+        CurvePair& pair = pairs.emplace_back();
+        pair.published = curve.points;
+        pair.published_mean = mean_of(curve.points);
+        const Selection selection = curve.selection.completed_by(figure.selection);
+        const std::string column = figure.of_rate() ? "wall_ms" : figure.column;
+        add_ours(figure, evidence.curve(column, selection, figure.where), pair);
+    }
+    const auto published = pairs[figure.baseline].published_mean;
+    const auto ours = pairs[figure.baseline].our_mean;
+    for (CurvePair& pair : pairs) {
+        divide(pair.published, pair.published_mean, published);
+        divide(pair.ours, pair.our_mean, ours);
+    }
+    return pairs;
 }
 
 }  // namespace lodbench::reproduce

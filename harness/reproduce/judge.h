@@ -1,6 +1,7 @@
 #pragma once
 // The claims of a paper against what was flown: only figures decide.
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,13 +26,25 @@ struct Finding {
     std::optional<Interval> value;  ///< that decides it
     std::string expected;           ///< ">= 1"
     Outcome outcome = Outcome::unjudged;
-    std::string reason;  ///< why it is not decided or not judged
+    std::string reason;                ///< why it is not decided or not judged
+    std::set<std::string> cells = {};  ///< that it is of: "EXPERIMENT/CELL"
+};
+
+/// Whether what is said of a claim that does not hold is so, where it does not.
+struct ExplanationVerdict {
+    const Explanation* explanation = nullptr;
+    Outcome outcome = Outcome::unjudged;  ///< holds: confirmed
+    std::vector<Finding> findings;
 };
 
 struct ReadingVerdict {
     std::string reading;
     Outcome outcome = Outcome::unjudged;
     std::vector<Finding> findings;
+    std::vector<ExplanationVerdict> explanations;  ///< of a reading that does not hold
+
+    /// Of one that does not hold: whether an explanation is confirmed.
+    [[nodiscard]] bool explained() const;
 };
 
 struct Verdict {
@@ -39,6 +52,9 @@ struct Verdict {
     Outcome outcome = Outcome::unjudged;
     std::string reason;  ///< why no figure was asked for; "" where some were
     std::vector<ReadingVerdict> readings;
+
+    /// Of one that does not hold: whether each reading of it is explained.
+    [[nodiscard]] bool explained() const;
 };
 
 /// What is flown, where that decides whether a claim can be judged.
@@ -48,9 +64,14 @@ struct Setting {
 
 /// In the order of the claims, whose addresses they hold. A claim of which one finding fails does
 /// not hold, whatever the others say; of which one could not be made, cannot be judged; of which
-/// one is not decided, is not. Throws InputError as Evidence::measure.
+/// one is not decided, is not. Throws InputError as Evidence::measure, and for an explanation that
+/// asks for no cell but those of its claim: what it is about was not changed.
 [[nodiscard]] std::vector<Verdict> judge(const Paper& paper, const Evidence& evidence,
                                          const Setting& setting);
+
+/// Asks all claims, explanations, tables and curves for their cells, before any of them is flown.
+/// Throws InputError as `judge` does.
+void check_selections(const Paper& paper, const Evidence& planned);
 
 /// A cell of a table: the paper's figure and ours, and both over their baselines.
 struct TableCell {
@@ -61,5 +82,16 @@ struct TableCell {
 /// `reading` completes the table's selections. Throws InputError as Evidence::measure.
 [[nodiscard]] TableCell table_cell(const Table& table, std::size_t row, std::size_t column,
                                    const Evidence& evidence, const Selection& reading = {});
+
+/// A curve of a figure, the paper's and ours: each over the mean of its own baseline.
+struct CurvePair {
+    using Points = std::vector<std::pair<double, double>>;  ///< part of the flight, and value
+    Points published, ours;
+    std::optional<double> published_mean, our_mean;  ///< over the flight
+    std::string why_not;                             ///< why there is none of ours
+};
+/// In the order of the figure's curves. Throws InputError as Evidence::measure.
+[[nodiscard]] std::vector<CurvePair> curve_pairs(const LineFigure& figure,
+                                                 const Evidence& evidence);
 
 }  // namespace lodbench::reproduce

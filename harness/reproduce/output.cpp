@@ -50,6 +50,32 @@ std::string evidence_text(const Verdict& verdict) {
     return text;
 }
 
+std::string explanation_text(const ReadingVerdict& reading) {
+    std::string text;
+    for (const ExplanationVerdict& verdict : reading.explanations) {
+        if (verdict.outcome != Outcome::holds) continue;
+        if (!text.empty()) text += "; ";
+        text += verdict.explanation->words;
+        const Finding& shown = verdict.findings.front();
+        text += fmt::format(" ({}: {}, {})", shown.what, shown.value->text(), shown.expected);
+    }
+    return text.empty() ? "not explained" : text;
+}
+
+/// Why it does not hold; of each reading in which it does not.
+std::string explanation_text(const Verdict& verdict) {
+    std::string text;
+    for (const ReadingVerdict& reading : verdict.readings) {
+        if (reading.outcome != Outcome::fails) continue;
+        if (!text.empty()) text += "; ";
+        if (!reading.reading.empty()) text += reading.reading + ": ";
+        text += verdict.outcome == Outcome::depends && !reading.explained()
+                    ? "by the reading"
+                    : explanation_text(reading);
+    }
+    return text;
+}
+
 std::string published_text(const TableCell& cell) {
     if (!cell.published) return "-";
     const std::string value = number_text(*cell.published);
@@ -64,17 +90,17 @@ std::string our_text(const TableCell& cell) {
                                  : cell.ours.value->text();
 }
 
-std::string markdown(const TextTable& table) {
+std::string markdown_row(const std::vector<std::string>& fields) {
     std::string text = "|";
-    for (const std::string& head : table.head) text += " " + markdown_text(head) + " |";
-    text += "\n|";
+    for (const std::string& field : fields) text += " " + markdown_text(field) + " |";
+    return text + "\n";
+}
+
+std::string markdown(const TextTable& table) {
+    std::string text = markdown_row(table.head) + "|";
     for (std::size_t i = 0; i < table.head.size(); ++i) text += "---|";
     text += "\n";
-    for (const auto& row : table.rows) {
-        text += "|";
-        for (const std::string& field : row) text += " " + markdown_text(field) + " |";
-        text += "\n";
-    }
+    for (const auto& row : table.rows) text += markdown_row(row);
     return text;
 }
 
@@ -87,11 +113,16 @@ std::string markdown_list(const std::vector<std::string>& lines) {
 std::string markdown(const PaperOutcome& outcome) {
     const Paper& paper = *outcome.paper;
     std::string text =
-        fmt::format("\n## {}\n\n{}\n\n", markdown_text(paper.title), markdown_text(paper.citation));
+        fmt::format("\n<a id=\"{}\"></a>\n\n## {}\n\n{}\n\n", markdown_text(paper.id),
+                    markdown_text(paper.title), markdown_text(paper.citation));
     text += markdown_list(conditions(outcome));
     text += "\n### Claims\n\n" + markdown(claim_table(outcome));
     for (const Table& table : paper.tables) {
         const TextTable shown = figure_table(outcome, table);
+        text += fmt::format("\n### {}\n\n{}", markdown_text(shown.caption), markdown(shown));
+    }
+    for (const LineFigure& figure : paper.figures) {
+        const TextTable shown = curve_table(outcome, figure);
         text += fmt::format("\n### {}\n\n{}", markdown_text(shown.caption), markdown(shown));
     }
     text += "\n### Every figure\n";
@@ -118,6 +149,22 @@ Json::Value to_json(const Finding& finding) {
         json[name] = finding.value ? results::number_or_inf(*finding.value.*member)
                                    : Json::Value(Json::nullValue);
     }
+    json["cells"] = Json::arrayValue;
+    for (const std::string& cell : finding.cells) json["cells"].append(cell);
+    return json;
+}
+
+Json::Value to_json(const std::vector<Finding>& findings) {
+    Json::Value json = Json::arrayValue;
+    for (const Finding& finding : findings) json.append(to_json(finding));
+    return json;
+}
+
+Json::Value to_json(const ExplanationVerdict& verdict) {
+    Json::Value json;
+    json["words"] = verdict.explanation->words;
+    json["confirmed"] = verdict.outcome == Outcome::holds;
+    json["findings"] = to_json(verdict.findings);
     return json;
 }
 
@@ -128,13 +175,17 @@ Json::Value to_json(const Verdict& verdict) {
     json["place"] = verdict.claim->place;
     json["verdict"] = name_of(verdict.outcome);
     json["reason"] = verdict.reason;
+    if (verdict.outcome == Outcome::fails) json["explained"] = verdict.explained();
     json["readings"] = Json::arrayValue;
     for (const ReadingVerdict& reading : verdict.readings) {
         Json::Value entry;
         entry["reading"] = reading.reading;
         entry["verdict"] = name_of(reading.outcome);
-        entry["findings"] = Json::arrayValue;
-        for (const Finding& finding : reading.findings) entry["findings"].append(to_json(finding));
+        entry["findings"] = to_json(reading.findings);
+        entry["explanations"] = Json::arrayValue;
+        for (const ExplanationVerdict& explanation : reading.explanations) {
+            entry["explanations"].append(to_json(explanation));
+        }
         json["readings"].append(entry);
     }
     return json;
@@ -146,27 +197,64 @@ std::size_t count(const PaperOutcome& outcome, Outcome which) {
     return std::size_t(std::ranges::count(outcome.verdicts, which, &Verdict::outcome));
 }
 
+std::size_t count_explained(const PaperOutcome& outcome) {
+    return std::size_t(std::ranges::count_if(outcome.verdicts, &Verdict::explained));
+}
+
 TextTable overview_table(const std::vector<PaperOutcome>& outcomes) {
-    TextTable table{"overview", "Claims of each paper", {"paper", "claims"}, {}};
-    for (const Outcome which : kOutcomes) table.head.emplace_back(name_of(which));
+    TextTable table{"overview", "Claims of each paper", {"paper", "claims", "judged"}, {}};
+    for (const Outcome which : kOutcomes) {
+        table.head.emplace_back(name_of(which));
+        if (which == Outcome::fails) table.head.emplace_back("of these explained");
+    }
+    std::vector<std::size_t> sums(table.head.size() - 1);
     for (const PaperOutcome& outcome : outcomes) {
-        auto& row = table.rows.emplace_back();
-        row = {outcome.paper->title, fmt::format("{}", outcome.verdicts.size())};
+        const std::size_t claims = outcome.verdicts.size();
+        std::vector<std::size_t> row = {claims, claims - count(outcome, Outcome::unjudged)};
         for (const Outcome which : kOutcomes) {
-            row.push_back(fmt::format("{}", count(outcome, which)));
+            row.push_back(count(outcome, which));
+            if (which == Outcome::fails) row.push_back(count_explained(outcome));
+        }
+        auto& fields = table.rows.emplace_back();
+        fields.push_back(outcome.paper->title);
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            fields.push_back(fmt::format("{}", row[i]));
+            sums[i] += row[i];
         }
     }
+    if (outcomes.size() < 2) return table;
+    auto& fields = table.rows.emplace_back();
+    fields.emplace_back("all");
+    for (const std::size_t sum : sums) fields.push_back(fmt::format("{}", sum));
     return table;
+}
+
+std::string overview_markdown(const std::vector<PaperOutcome>& outcomes,
+                              const std::string& document) {
+    const TextTable table = overview_table(outcomes);
+    std::string text = markdown_row(table.head) + "|---|";
+    for (std::size_t i = 1; i < table.head.size(); ++i) text += "---:|";
+    text += "\n";
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        std::vector<std::string> row = table.rows[i];
+        for (std::string& field : row) field = markdown_text(field);
+        if (i < outcomes.size()) {
+            row[0] = fmt::format("[{}]({}#{})", row[0], document, outcomes[i].paper->id);
+        }
+        text += fmt::format("| {} |\n", fmt::join(row, " | "));
+    }
+    return text;
 }
 
 TextTable claim_table(const PaperOutcome& outcome) {
     TextTable table{"claims-" + outcome.paper->id,
                     "Claims",
-                    {"", "claim", "place", "verdict", "decided by"},
+                    {"", "claim", "place", "verdict", "decided by", "why not"},
                     {}};
     for (const Verdict& verdict : outcome.verdicts) {
         table.rows.push_back({verdict.claim->id, verdict.claim->words, verdict.claim->place,
-                              name_of(verdict.outcome), evidence_text(verdict)});
+                              name_of(verdict.outcome), evidence_text(verdict),
+                              explanation_text(verdict)});
     }
     return table;
 }
@@ -176,12 +264,36 @@ TextTable finding_table(const Verdict& verdict) {
                     verdict.claim->id,
                     {"reading", "figure", "value", "to be", "outcome", "why"},
                     {}};
-    for (const ReadingVerdict& reading : verdict.readings) {
-        for (const Finding& finding : reading.findings) {
-            table.rows.push_back({reading.reading, finding.what,
-                                  finding.value ? finding.value->text() : "-", finding.expected,
-                                  name_of(finding.outcome), finding.reason});
+    const auto add = [&](const std::string& of, const std::vector<Finding>& findings) {
+        for (const Finding& finding : findings) {
+            table.rows.push_back({of, finding.what, finding.value ? finding.value->text() : "-",
+                                  finding.expected, name_of(finding.outcome), finding.reason});
         }
+    };
+    for (const ReadingVerdict& reading : verdict.readings) {
+        add(reading.reading, reading.findings);
+        for (const ExplanationVerdict& explanation : reading.explanations) {
+            add((reading.reading.empty() ? "" : reading.reading + "; ") +
+                    "if: " + explanation.explanation->words,
+                explanation.findings);
+        }
+    }
+    return table;
+}
+
+TextTable curve_table(const PaperOutcome& outcome, const LineFigure& figure) {
+    TextTable table{"curves-" + outcome.paper->id,
+                    figure.title,
+                    {"mean over that of " + figure.curves[figure.baseline].title, "the paper",
+                     "ours", "why not"},
+                    {}};
+    const std::vector<CurvePair> pairs = curve_pairs(figure, outcome.evidence);
+    const auto text = [](const std::optional<double>& value) {
+        return value ? number_text(*value) : std::string("-");
+    };
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        table.rows.push_back({figure.curves[i].title, text(pairs[i].published_mean),
+                              text(pairs[i].our_mean), pairs[i].why_not});
     }
     return table;
 }
@@ -235,7 +347,7 @@ std::vector<std::string> conditions(const PaperOutcome& outcome) {
 }
 
 std::string to_markdown(const std::vector<PaperOutcome>& outcomes) {
-    std::string text = "# lodbench reproduce\n\n" + markdown(overview_table(outcomes));
+    std::string text = "# lodbench reproduce\n\n" + overview_markdown(outcomes, "");
     for (const PaperOutcome& outcome : outcomes) text += markdown(outcome);
     return text;
 }

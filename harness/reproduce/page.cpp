@@ -73,6 +73,35 @@ html::Plot plot_of(const PaperOutcome& outcome, const Table& table) {
     return plot;
 }
 
+/// The paper's curves, dashed, and ours: each over the mean of its own baseline.
+html::Plot plot_of(const PaperOutcome& outcome, const LineFigure& figure) {
+    html::Plot plot;
+    plot.id = html::slug(outcome.paper->id + "-figure-" + figure.id);
+    plot.title = figure.title;
+    plot.x_title = "part of the flight";
+    plot.y_title = fmt::format("over the mean of {}", figure.curves[figure.baseline].title);
+    const std::vector<CurvePair> pairs = curve_pairs(figure, outcome.evidence);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const auto add = [&](const CurvePair::Points& points, const char* whose, bool ours) {
+            if (points.empty()) return;
+            html::Series series;
+            series.name = fmt::format("{}, {}", figure.curves[i].title, whose);
+            series.color = i;
+            series.variant = ours ? 0 : 1;
+            series.dots = !ours;
+            for (const auto& [at, value] : points) series.marks.push_back({at, value});
+            if (ours) series.marks = html::thinned(series.marks, 400);
+            plot.series.push_back(std::move(series));
+        };
+        add(pairs[i].published, "the paper", false);
+        add(pairs[i].ours, "ours", true);
+        if (!pairs[i].why_not.empty()) {
+            plot.notes.push_back(figure.curves[i].title + ": " + pairs[i].why_not);
+        }
+    }
+    return plot;
+}
+
 void add_paper(html::Page& page, const PaperOutcome& outcome) {
     const Paper& paper = *outcome.paper;
     const std::string id = html::slug(paper.id);
@@ -85,6 +114,11 @@ void add_paper(html::Page& page, const PaperOutcome& outcome) {
         page.heading(3, table.title, id + "-" + html::slug(table.id));
         page.table(page_table(figure_table(outcome, table)));
         page.plots({plot_of(outcome, table)}, true);
+    }
+    for (const LineFigure& figure : paper.figures) {
+        page.heading(3, figure.title, id + "-figure-" + html::slug(figure.id));
+        page.table(page_table(curve_table(outcome, figure)));
+        page.plots({plot_of(outcome, figure)}, true);
     }
     page.heading(3, "Every figure", id + "-figures");
     for (const Verdict& verdict : outcome.verdicts) {

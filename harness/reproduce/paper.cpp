@@ -23,7 +23,7 @@ std::string Selection::words() const {
         if (!word.empty()) text += (text.empty() ? "" : ", ") + word;
     };
     add(method);
-    for (const auto& [name, value] : params) add(name + "=" + value);
+    for (const auto& [name, value] : params) add(value.empty() ? "" : name + "=" + value);
     add(scenario);
     return text;
 }

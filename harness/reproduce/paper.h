@@ -21,7 +21,7 @@ namespace lodbench::reproduce {
 /// Which cells are meant. What is empty says nothing about them.
 struct Selection {
     std::string experiment, scenario, method;
-    std::map<std::string, std::string> params;  ///< values as text
+    std::map<std::string, std::string> params;  ///< values as text; "": any, whatever others say
 
     /// With what `other` says where this says nothing.
     [[nodiscard]] Selection completed_by(const Selection& other) const;
@@ -95,6 +95,24 @@ struct Table {
         std::size_t row, std::size_t column) const;
 };
 
+/// Curves along a flight, as a paper draws them.
+struct LineFigure {
+    struct Curve {
+        std::string title;
+        Selection selection;
+        /// Part of the flight, 0 to 1 and rising, and value; empty where no number is printed.
+        std::vector<std::pair<double, double>> points;
+    };
+    std::string id, title, unit;
+    std::string column;  ///< of frames: "wall_ms", "triangles", ..., or "fps", of wall_ms
+    Selection selection;
+    std::vector<Curve> curves;
+    std::size_t baseline = 0;  ///< the curve by whose mean all are divided
+    std::string where;
+
+    [[nodiscard]] bool of_rate() const { return column == "fps"; }
+};
+
 /// A predicate over results.
 struct Test {
     enum class Kind {
@@ -128,11 +146,21 @@ struct Reading {
     Selection selection;
 };
 
+/// Why a claim may not hold, to be seen in flights that the claim itself does not ask for: with one
+/// thing changed.
+struct Explanation {
+    std::string words;
+    std::optional<Selection> selection;  ///< in the place of the claim's
+    std::vector<Test> tests;             ///< all are to hold
+    std::string where;
+};
+
 struct Claim {
     std::string id, words, place;
     Selection selection;
-    std::vector<Reading> readings;  ///< at least one; the only one may be without a name
-    std::vector<Test> tests;        ///< all are to hold
+    std::vector<Reading> readings;          ///< at least one; the only one may be without a name
+    std::vector<Test> tests;                ///< all are to hold
+    std::vector<Explanation> explanations;  ///< of these any
     /// Why nothing here can judge it; "" where tests do.
     std::string unjudged;
     bool needs_gpu = false;      ///< is about times of a GPU
@@ -158,6 +186,7 @@ struct Paper {
     scenario::Overrides quick;  ///< with --quick, of all experiments
     std::vector<Experiment> experiments;
     std::vector<Table> tables;
+    std::vector<LineFigure> figures;
     std::vector<Claim> claims;
 
     /// nullptr where there is none of that id.
@@ -168,6 +197,9 @@ struct Paper {
 /// Throws InputError as "FILE:LINE: what is wrong with VALUE; remedy", also for a figure that is no
 /// field of a cell, an experiment or a table that is not there, and a key that is not known.
 [[nodiscard]] Paper read_paper(const std::filesystem::path& file);
+
+/// Columns of single frames that are kept (results/folder.h).
+[[nodiscard]] const std::vector<std::string>& frame_columns();
 
 /// "fps * triangles.mean / frames". "frames.triangles@0.5" is of the frame halfway along the
 /// flight, by the columns of its CSV that are kept (results/folder.h). Throws InputError that

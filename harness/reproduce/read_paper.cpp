@@ -84,11 +84,11 @@ scenario::Overrides read_overrides(Section& section, std::string_view key) {
 
 std::string param_text(const Section& section, std::string_view key, const toml::node& node) {
     if (const auto* text = node.as_string()) {
-        if (!text->get().empty()) return text->get();
+        return text->get();
     } else if (node.is_number() || node.is_boolean()) {
         return scenario::describe(node);
     }
-    section.refuse(key, "write a number, true or false, or text");
+    section.refuse(key, "write a number, true or false, or text; \"\" is any value");
 }
 
 void set_key(Selection& selection, std::string_view key, std::string value) {
@@ -284,6 +284,54 @@ Table read_table(Section& section, const std::set<std::string>& taken) {
     return table;
 }
 
+/// [[part, value], ...], rising.
+std::vector<std::pair<double, double>> read_points(Section& section) {
+    std::vector<std::pair<double, double>> points;
+    const toml::node* node = section.node("points");
+    if (node == nullptr) return points;
+    const std::string remedy =
+        "write a list of [part of the flight, value], the parts rising from 0 to 1";
+    const toml::array* list = node->as_array();
+    if (list == nullptr) section.refuse("points", remedy);
+    for (const toml::node& entry : *list) {
+        const toml::array* pair = entry.as_array();
+        if (pair == nullptr || pair->size() != 2) section.refuse("points", remedy);
+        const double at = section.number_of("points", (*pair)[0], Limits{0, 1});
+        if (!points.empty() && at <= points.back().first) section.refuse("points", remedy);
+        points.emplace_back(at, section.number_of("points", (*pair)[1], Limits{}));
+    }
+    return points;
+}
+
+LineFigure read_figure(Section& section, const std::set<std::string>& taken) {
+    LineFigure figure;
+    figure.where = section.where();
+    figure.id = read_id(section, taken);
+    figure.title = required_text(section, "title", "what the figure shows");
+    figure.unit = section.text("unit").value_or("");
+    figure.column = required_text(section, "column", "a column of frames, or fps");
+    std::vector<std::string> known = frame_columns();
+    known.emplace_back("fps");
+    if (std::ranges::find(known, figure.column) == known.end()) {
+        section.refuse("column", Section::known_names(figure.column, known));
+    }
+    figure.selection = read_selection(section, "select");
+    std::vector<std::string> titles;
+    for (Section& part : section.sections("curve")) {
+        figure.curves.push_back({required_text(part, "title", "what the curve is of"),
+                                 read_selection(part, "select"), read_points(part)});
+        part.refuse_unknown(kKind);
+        titles.push_back(figure.curves.back().title);
+    }
+    if (figure.curves.empty()) section.require("curve", "write [[figure.curve]]");
+    const auto baseline = index_of_title(section, "baseline", titles);
+    if (!baseline)
+        section.require("baseline", "write the title of the curve that all are divided by");
+    figure.baseline = *baseline;
+    section.refuse_unknown(kKind);
+    return figure;
+}
+
 // ---- claims ------------------------------------------------------------------------------------
 
 constexpr std::pair<Test::Kind, const char*> kKinds[] = {
@@ -409,6 +457,36 @@ void check_experiments(const Selection& selection, const Paper& paper, const std
                                  Section::known_names(selection.experiment, known)));
 }
 
+std::vector<Test> read_tests(Section& section, const Paper& paper) {
+    std::vector<Test> tests;
+    for (Section& part : section.sections("test")) tests.push_back(read_test(part, paper));
+    return tests;
+}
+
+Explanation read_explanation(Section& section, const Paper& paper) {
+    Explanation explanation;
+    explanation.where = section.where();
+    explanation.words = required_text(section, "words", "why the claim may not hold");
+    if (section.has("select")) explanation.selection = read_selection(section, "select");
+    explanation.tests = read_tests(section, paper);
+    if (explanation.tests.empty()) {
+        section.require("test",
+                        "write [[claim.explanation.test]]: figures decide whether it is so");
+    }
+    section.refuse_unknown(kKind);
+    return explanation;
+}
+
+void check_test_experiments(const std::vector<Test>& tests, const Paper& paper) {
+    for (const Test& test : tests) {
+        for (const auto& list : {test.for_each, test.over}) {
+            for (const Selection& selection : list) check_experiments(selection, paper, test.where);
+        }
+        if (test.of) check_experiments(test.of->selection, paper, test.where);
+        if (test.to) check_experiments(test.to->selection, paper, test.where);
+    }
+}
+
 Claim read_claim(Section& section, const Paper& paper, const std::set<std::string>& taken) {
     Claim claim;
     claim.where = section.where();
@@ -424,7 +502,10 @@ Claim read_claim(Section& section, const Paper& paper, const std::set<std::strin
         part.refuse_unknown(kKind);
     }
     if (claim.readings.empty()) claim.readings.emplace_back();
-    for (Section& part : section.sections("test")) claim.tests.push_back(read_test(part, paper));
+    claim.tests = read_tests(section, paper);
+    for (Section& part : section.sections("explanation")) {
+        claim.explanations.push_back(read_explanation(part, paper));
+    }
     if (claim.tests.empty() == claim.unjudged.empty()) {
         section.require("test", "write [[claim.test]], or unjudged = \"why nothing can judge it\"");
     }
@@ -434,12 +515,12 @@ Claim read_claim(Section& section, const Paper& paper, const std::set<std::strin
     for (const Reading& reading : claim.readings) {
         check_experiments(reading.selection, paper, claim.where);
     }
-    for (const Test& test : claim.tests) {
-        for (const auto& list : {test.for_each, test.over}) {
-            for (const Selection& selection : list) check_experiments(selection, paper, test.where);
+    check_test_experiments(claim.tests, paper);
+    for (const Explanation& explanation : claim.explanations) {
+        if (explanation.selection) {
+            check_experiments(*explanation.selection, paper, explanation.where);
         }
-        if (test.of) check_experiments(test.of->selection, paper, test.where);
-        if (test.to) check_experiments(test.to->selection, paper, test.where);
+        check_test_experiments(explanation.tests, paper);
     }
     return claim;
 }
@@ -472,6 +553,12 @@ void check_tables(const Paper& paper) {
         }
         for (const auto& row : table.rows) check_experiments(row.selection, paper, table.where);
     }
+    for (const LineFigure& figure : paper.figures) {
+        check_experiments(figure.selection, paper, figure.where);
+        for (const auto& curve : figure.curves) {
+            check_experiments(curve.selection, paper, figure.where);
+        }
+    }
 }
 
 }  // namespace
@@ -503,6 +590,9 @@ Paper read_paper(const fs::path& file) {
     }
     for (Section& section : top.sections("table")) {
         paper.tables.push_back(read_table(section, ids_of(paper.tables)));
+    }
+    for (Section& section : top.sections("figure")) {
+        paper.figures.push_back(read_figure(section, ids_of(paper.figures)));
     }
     check_tables(paper);
     for (Section& section : top.sections("claim")) {

@@ -41,9 +41,7 @@ public:
         device_ = &device;
         scene_.upload(device, *ground_, tree_->size());
         ground_.reset();
-        program_ = gl::Program(
-            device, "dss: strips", embedded_shaders(),
-            {{GL_VERTEX_SHADER, "strip.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}});
+        program_ = strip_program(device);
     }
 
     void select(const Camera& camera, const Clock&) override {
@@ -83,7 +81,8 @@ public:
                 {"strips_listing_ms", 1e3 * seconds.listing},
                 {"strips_vertices_ms", 1e3 * seconds.vertices},
                 {"strips_triangles_ms", 1e3 * seconds.triangles},
-                {"strips_upload_ms", upload_ms_}};
+                {"strips_upload_ms", upload_ms_},
+                {"strips_ms", 1e3 * (seconds.listing + seconds.vertices + seconds.triangles)}};
     }
 
     void release(gl::Device&) override {
@@ -95,6 +94,24 @@ public:
     }
 
 private:
+    /// In software through a geometry shader, which says why.
+    static gl::Program strip_program(gl::Device& device) {
+        if (!device.info().software) {
+            return {
+                device,
+                "dss: strips",
+                embedded_shaders(),
+                {{GL_VERTEX_SHADER, "strip.vert"}, {GL_FRAGMENT_SHADER, "common/terrain.frag"}}};
+        }
+        return {device,
+                "dss: strips",
+                embedded_shaders(),
+                {{GL_VERTEX_SHADER, "strip.vert"},
+                 {GL_GEOMETRY_SHADER, "strip.geom"},
+                 {GL_FRAGMENT_SHADER, "common/terrain.frag"}},
+                {{"THROUGH_GEOMETRY", "1"}}};
+    }
+
     void freeze() {
         blocks_.clear();
         for (const Leaf& leaf : cut_->leaves()) {

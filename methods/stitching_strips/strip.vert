@@ -1,6 +1,9 @@
 #version 450 core
 // A vertex of a strip: one of a block's edge, with that block's numbers, so that both are in one place to the bit.
 
+#ifdef THROUGH_GEOMETRY
+#define lodbench_position strip_position  // strip.geom passes it on
+#endif
 #include "common/terrain.glsl"
 #include "blocks.glsl"
 #include "placement.glsl"

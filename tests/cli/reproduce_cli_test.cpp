@@ -128,6 +128,56 @@ TEST(Reproduce, a_plan_flies_nothing) {
     EXPECT_FALSE(fs::exists(folder.path() / "lodbench-results"));
 }
 
+TEST(Reproduce, what_is_wrong_in_a_paper_is_refused_before_anything_is_flown) {
+    const ScratchFolder folder;
+    const fs::path out = folder.path() / "out";
+    const auto refusal = [&](const std::string& from, const std::string& to) {
+        std::string text = paper_text("10");
+        const fs::path paper =
+            paper_file(folder.path(), text.replace(text.find(from), from.size(), to));
+        const auto run = run_lodbench({"reproduce", paper, "--out", out}, folder.path());
+        EXPECT_EQ(run.status, 2) << run.output;
+        EXPECT_FALSE(fs::exists(out));
+        return run.output;
+    };
+    EXPECT_THAT(refusal("tau = [0.01, 100]", "tau = [0.01, -1]"), HasSubstr("paper.toml:"));
+    EXPECT_THAT(refusal("tau = [0.01, 100]", "tua = [0.01, 100]"), HasSubstr("tau"));
+    EXPECT_THAT(refusal("tau = 100 }", "tau = 99 }"),
+                HasSubstr("no cell of experiment flight has refined, tau=99"));
+}
+
+TEST(Reproduce, a_claim_that_does_not_hold_is_explained_by_an_experiment) {
+    const ScratchFolder folder;
+    const std::string explanation = R"([[claim]]
+id = "few"
+words = "Fewer than ten triangles"
+place = "table 3"
+select = { experiment = "flight", method = "refined" }
+[[claim.test]]
+kind = "bound"
+of = { field = "triangles.mean", tau = 100 }
+below = 1
+[[claim.explanation]]
+words = "none are left out at any tolerance"
+[[claim.explanation.test]]
+kind = "ratio"
+of = { field = "triangles.mean", tau = 0.01 }
+to = { field = "triangles.mean", tau = 100 }
+)";
+    const fs::path out = folder.path() / "out";
+    fs::path paper = paper_file(folder.path(), paper_text("10") + explanation + "most = 1\n");
+    ASSERT_EQ(run_lodbench({"reproduce", paper, "--out", out}, folder.path()).status, 0);
+    EXPECT_EQ(verdict(out, 2), "does not hold");
+    EXPECT_THAT(text_of(out / "reproduce.md"), HasSubstr("| none are left out at any tolerance ("));
+    EXPECT_THAT(text_of(out / "overview.md"),
+                HasSubstr("| [A paper](reproduce.md#paper) | 3 | 2 | 1 | 1 | 1 |"));
+    paper = paper_file(folder.path(), paper_text("10") + explanation + "above = 1\n");
+    ASSERT_EQ(run_lodbench({"reproduce", paper, "--out", out, "--resume"}, folder.path()).status,
+              0);
+    EXPECT_EQ(verdict(out, 2), "does not hold");
+    EXPECT_THAT(text_of(out / "reproduce.md"), HasSubstr("| not explained |"));
+}
+
 TEST(Reproduce, refuses_folders_that_are_not_its_own) {
     const ScratchFolder folder;
     const fs::path paper = paper_file(folder.path(), paper_text("10"));

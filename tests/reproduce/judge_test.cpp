@@ -48,6 +48,7 @@ FlownExperiment flown() {
 
 struct Judged {
     Outcome outcome;
+    bool explained;
     std::string text;  ///< all that is said of it
     std::vector<Finding> findings;
 };
@@ -65,7 +66,8 @@ Judged judged(const std::string& rest, const FlownExperiment& experiment,
     for (const ReadingVerdict& reading : outcome.verdicts.at(0).readings) {
         findings.insert(findings.end(), reading.findings.begin(), reading.findings.end());
     }
-    return {outcome.verdicts.at(0).outcome, to_markdown({outcome}), findings};
+    return {outcome.verdicts.at(0).outcome, outcome.verdicts.at(0).explained(),
+            to_markdown({outcome}), findings};
 }
 
 const std::string kClaim = R"([[claim]]
@@ -235,6 +237,158 @@ select = { tau = 1 }
     EXPECT_EQ(differs.outcome, Outcome::depends);
     EXPECT_THAT(differs.text, HasSubstr("coarse: holds."));
     EXPECT_THAT(differs.text, HasSubstr("fine: does not hold."));
+}
+
+/// 400 triangles at tau 1 are to be 300 at most; at tau 4 there are 100.
+std::string explained_claim(const std::string& explanation) {
+    return claim("kind = \"bound\"\nof = { field = \"triangles.mean\", tau = 1 }\nmost = 300\n" +
+                 explanation);
+}
+
+std::string explanation(const std::string& test) {
+    return "[[claim.explanation]]\nwords = \"the tolerance is too fine\"\n"
+           "[[claim.explanation.test]]\n" +
+           test;
+}
+
+const std::string kCoarserIsFewer = explanation(
+    "kind = \"ratio\"\nof = { field = \"triangles.mean\", tau = 4 }\nto = { field = "
+    "\"triangles.mean\", tau = 1 }\nbelow = 0.5\n");
+
+TEST(Judge, what_does_not_hold_is_explained_by_figures_alone) {
+    const Judged without = judged(explained_claim(""), flown());
+    EXPECT_EQ(without.outcome, Outcome::fails);
+    EXPECT_FALSE(without.explained);
+    EXPECT_THAT(without.text, HasSubstr("| not explained |"));
+
+    const Judged confirmed = judged(explained_claim(kCoarserIsFewer), flown());
+    EXPECT_EQ(confirmed.outcome, Outcome::fails);
+    EXPECT_TRUE(confirmed.explained);
+    EXPECT_THAT(confirmed.text, HasSubstr("| the tolerance is too fine (triangles.mean"));
+
+    FlownExperiment same = flown();
+    for (CellRecord& record : same.cells) record.triangles->mean = 400;
+    const Judged refuted = judged(explained_claim(kCoarserIsFewer), same);
+    EXPECT_EQ(refuted.outcome, Outcome::fails);
+    EXPECT_FALSE(refuted.explained);
+    EXPECT_THAT(refuted.text, HasSubstr("| not explained |"));
+
+    FlownExperiment failed = flown();
+    failed.cells[5].status = CellStatus::crashed;
+    EXPECT_FALSE(judged(explained_claim(kCoarserIsFewer), failed).explained);
+    // One that is confirmed is enough.
+    EXPECT_TRUE(judged(explained_claim(explanation("kind = \"bound\"\nof = { field = "
+                                                   "\"triangles.mean\", tau = 4 }\nmost = 1\n") +
+                                       kCoarserIsFewer),
+                       flown())
+                    .explained);
+}
+
+TEST(Judge, what_holds_needs_no_explanation) {
+    FlownExperiment fewer = flown();
+    for (CellRecord& record : fewer.cells) *record.triangles->mean /= 2;
+    const Judged holds = judged(explained_claim(kCoarserIsFewer), fewer);
+    EXPECT_EQ(holds.outcome, Outcome::holds);
+    EXPECT_FALSE(holds.explained);
+    EXPECT_THAT(holds.text, testing::Not(HasSubstr("the tolerance is too fine")));
+    EXPECT_THAT(holds.text, testing::Not(HasSubstr("not explained")));
+}
+
+TEST(Judge, the_overview_counts_what_is_explained) {
+    const ScratchFolder folder;
+    const Paper paper =
+        read_paper(test::paper_file(folder.path(), explained_claim(kCoarserIsFewer)));
+    PaperOutcome outcome;
+    outcome.paper = &paper;
+    outcome.evidence.experiments["flight"] = flown();
+    outcome.verdicts = judge(paper, outcome.evidence, {});
+    EXPECT_EQ(overview_markdown({outcome}, "there.md"),
+              "| paper | claims | judged | holds | does not hold | of these explained | depends on "
+              "the reading | not decided | cannot be judged here |\n"
+              "|---|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+              "| [A paper](there.md#paper) | 1 | 1 | 0 | 1 | 1 | 0 | 0 | 0 |\n");
+    const Json::Value json = to_json({outcome})["papers"][0]["claims"][0];
+    EXPECT_TRUE(json["explained"].asBool());
+    EXPECT_TRUE(json["readings"][0]["explanations"][0]["confirmed"].asBool());
+    EXPECT_EQ(json["readings"][0]["findings"][0]["cells"][0], "flight/refined__tau=1__r0");
+}
+
+TEST(Judge, an_explanation_without_an_experiment_is_refused) {
+    const auto refusal = [](const std::string& text) -> std::string {
+        try {
+            (void)judged(text, flown());
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    EXPECT_THAT(
+        refusal(explained_claim(explanation(
+            "kind = \"bound\"\nof = { field = \"frame_ms.median\", tau = 1 }\nleast = 0\n"))),
+        HasSubstr("this explanation asks only for what the claim itself flies"));
+}
+
+TEST(Judge, an_empty_value_selects_any) {
+    const std::string claim_at_one = R"([[claim]]
+id = "C1"
+words = "It is so"
+place = "section 1"
+select = { experiment = "flight", method = "refined", tau = 1, skirts = "no" }
+[[claim.test]]
+kind = "bound"
+most = 400
+)";
+    EXPECT_THROW((void)judged(claim_at_one + "of = \"triangles.mean\"\n", flown()), InputError);
+    EXPECT_EQ(judged(claim_at_one + "of = { field = \"triangles.mean\", skirts = \"\" }\n", flown())
+                  .outcome,
+              Outcome::holds);
+}
+
+TEST(Judge, curves_stand_over_the_mean_of_their_own_baseline) {
+    const ScratchFolder folder;
+    const Paper paper = read_paper(test::paper_file(folder.path(), R"([[figure]]
+id = "8"
+title = "Figure 8"
+column = "fps"
+baseline = "slow"
+select = { experiment = "flight", method = "refined" }
+[[figure.curve]]
+title = "slow"
+select = { tau = 1 }
+points = [[0, 50], [0.5, 100], [1, 150]]
+[[figure.curve]]
+title = "fast"
+select = { tau = 4 }
+points = [[0, 300], [1, 100]]
+[[figure.curve]]
+title = "kept"
+select = { tau = 2 }
+)"));
+    Evidence evidence;
+    evidence.experiments["flight"] = flown();
+    auto& frames = evidence.experiments["flight"].frames;
+    frames["refined__tau=1__r0"].columns["wall_ms"] = {10, 30};
+    frames["refined__tau=1__r1"].columns["wall_ms"] = {12, 34};
+    frames["refined__tau=4__r0"].columns["wall_ms"] = {4, 5};
+    const std::vector<CurvePair> pairs = curve_pairs(paper.figures.at(0), evidence);
+    ASSERT_EQ(pairs.size(), 3U);
+    EXPECT_EQ(pairs[0].published, (CurvePair::Points{{0, 0.5}, {0.5, 1}, {1, 1.5}}));
+    EXPECT_EQ(pairs[1].published, (CurvePair::Points{{0, 3}, {1, 1}}));
+    EXPECT_DOUBLE_EQ(*pairs[1].published_mean, 2);
+    // Medians are 10 and 30 ms: 20 ms on the mean are 50 frames a second.
+    ASSERT_EQ(pairs[0].ours.size(), 2U);
+    EXPECT_DOUBLE_EQ(pairs[0].ours[0].second, 2);
+    EXPECT_DOUBLE_EQ(pairs[0].ours[1].second, 1000.0 / 30 / 50);
+    EXPECT_DOUBLE_EQ(*pairs[0].our_mean, 1);
+    EXPECT_DOUBLE_EQ(*pairs[1].our_mean, 1000 / 4.5 / 50);
+    EXPECT_TRUE(pairs[2].ours.empty());
+    EXPECT_EQ(pairs[2].why_not, "its frames were not kept");
+
+    PaperOutcome outcome;
+    outcome.paper = &paper;
+    outcome.evidence = evidence;
+    EXPECT_THAT(to_markdown({outcome}), HasSubstr("| fast | 2 | 4.444 |"));
+    EXPECT_THAT(to_html({outcome}), HasSubstr("fast, the paper"));
 }
 
 std::string table_with(const std::string& values) {

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <set>
 #include <string>
 
 #include "api/error.h"
@@ -47,6 +49,25 @@ TEST(ReadPaper, every_paper_of_the_tree_is_read) {
         }
     }
     EXPECT_GE(read, 1);
+}
+
+TEST(ReadPaper, every_scenario_of_a_papers_folder_is_flown_by_one_of_its_experiments) {
+    namespace fs = std::filesystem;
+    int scenarios = 0;
+    for (const auto& entry : fs::directory_iterator(LODBENCH_SOURCE_DIR "/scenarios/papers")) {
+        if (!entry.is_directory()) continue;
+        const auto own = entry.path() / (entry.path().filename().string() + ".toml");
+        std::set<fs::path> flown;
+        for (const Experiment& experiment : read_paper(own).experiments) {
+            for (const auto& file : experiment.scenarios) flown.insert(fs::weakly_canonical(file));
+        }
+        for (const auto& file : fs::directory_iterator(entry.path())) {
+            if (file.path() == own || file.path().extension() != ".toml") continue;
+            ++scenarios;
+            EXPECT_TRUE(flown.contains(fs::weakly_canonical(file.path()))) << file.path();
+        }
+    }
+    EXPECT_GE(scenarios, 10);
 }
 
 TEST(ReadPaper, what_stands_in_the_file_is_there) {
@@ -101,6 +122,15 @@ for_each = [{ tau = [1, 2] }, { tau = 3, k = "a" }]
     EXPECT_EQ(test.for_each[2].words(), "k=a, tau=3");
 }
 
+const std::string kFigure = R"([[figure]]
+id = "8"
+title = "Figure 8"
+column = "triangles"
+baseline = "a"
+[[figure.curve]]
+title = "a"
+)";
+
 TEST(ReadPaper, mistakes_are_told_by_line_and_remedy) {
     const std::string test = kClaim + "[[claim.test]]\n";
     const std::pair<std::string, std::string> cases[] = {
@@ -135,6 +165,21 @@ TEST(ReadPaper, mistakes_are_told_by_line_and_remedy) {
         {"[[experiment]]\nid = \"a/b\"\ndid = \"x\"\nscenarios = [\"tiny.toml\"]\n",
          "ids are 1 to 64 of"},
         {"[[experiment]]\nid = \"b\"\ndid = \"x\"\nscenarios = [\"no.toml\"]\n", "no.toml"},
+        {kClaim + "unjudged = \"why\"\n[[claim.explanation]]\nwords = \"so\"\n",
+         "write [[claim.explanation.test]]: figures decide"},
+        {test +
+             "kind = \"bound\"\nof = \"fps\"\nmost = 1\n[[claim.explanation]]\nwords = \"so\"\n"
+             "select = { experiment = \"fligth\" }\n[[claim.explanation.test]]\nkind = \"bound\"\n"
+             "of = \"fps\"\nmost = 1\n",
+         "there is no experiment \"fligth\"; did you mean flight?"},
+        {kFigure + "points = [[0.5, 1], [0.5, 2]]\n", "the parts rising from 0 to 1"},
+        {kFigure + "points = [[0, 1], [2, 2]]\n", "paper.toml:17: "},
+        {kFigure + "points = [0, 1]\n", "write a list of [part of the flight, value]"},
+        {"[[figure]]\nid = \"8\"\ntitle = \"t\"\ncolumn = \"tringles\"\n",
+         "did you mean triangles?"},
+        {"[[figure]]\nid = \"8\"\ntitle = \"t\"\ncolumn = \"fps\"\n[[figure.curve]]\ntitle = "
+         "\"a\"\n",
+         "baseline is missing"},
         {"match = { error_px = 1, triangles = 5 }\n", "write one of error_px"},
     };
     for (const auto& [rest, expected] : cases) EXPECT_THAT(refusal(rest), HasSubstr(expected));

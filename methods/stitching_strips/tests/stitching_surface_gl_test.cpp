@@ -103,6 +103,22 @@ TEST(StitchingSurface, culling_leaves_out_only_what_is_out_of_view_of_tess_pow2)
     expect_culling_to_leave_out_only_what_is_out_of_view("tess-pow2");
 }
 
+// A strip's edge and a block's, equal to the bit, lie nearly level on screen at the middle of a
+// pixel: one rounding of the place in the window and another left it open (see strip.geom).
+TEST(StitchingSurface, lets_no_pixel_through_between_a_strip_and_a_block) {
+    Flight flight(puget_sound(), "stitching_strips", "dss");
+    Camera camera = camera_at({69284.2855907719, 84500, 25156.524520873}, 90, -31.92964209807493);
+    camera.viewport = {1280, 960};
+    flight.select(camera);
+    flight.stage().draw_picture();
+    ASSERT_GT(flight.counter("strips_drawn"), 0);
+    const std::vector<float> depth = flight.stage().read_depth();
+    const float sky = depth.front();
+    EXPECT_GT(std::ranges::count(depth, sky), 1280);
+    // The lower half of the picture shows ground alone.
+    EXPECT_EQ(std::count(depth.begin() + std::ptrdiff_t(depth.size() / 2), depth.end(), sky), 0);
+}
+
 TEST(StitchingSurface, does_not_depend_on_the_number_of_threads) {
     const auto terrain = puget_sound();
     Camera camera = camera_at({87000, 84000, 2500}, 90, -20);
