@@ -10,8 +10,7 @@ layout(triangle_strip, max_vertices = 3) out;
 in gl_PerVertex {
     vec4 gl_Position;
     float gl_ClipDistance[4];
-}
-gl_in[];
+} gl_in[];
 in vec3 strip_position[];
 
 out gl_PerVertex {
