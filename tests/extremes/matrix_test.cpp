@@ -2,15 +2,12 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 #include "api/error.h"
 #include "compare/extremes.h"
 #include "extremes/output.h"
 #include "extremes/run.h"
 #include "results/extremes.h"
 #include "results/json.h"
-#include "support/run_lodbench.h"
 
 namespace lodbench {
 namespace {
@@ -117,32 +114,6 @@ TEST(ExtremesComparison, sees_a_cell_change_and_whether_it_became_worse) {
     EXPECT_TRUE(compare::compare_extremes(base, matrix({step("90", "good")})).changes[0].worse);
     const ExtremesMatrix other = matrix({step("90", "good"), step("170", "degraded", "cracks")});
     EXPECT_EQ(compare::compare_extremes(worse, other).changes.size(), 1U);
-}
-
-TEST(ExtremesComparison, the_command_compares_the_folders_of_two_batteries) {
-    const test::ScratchFolder folder;
-    const auto write = [&](const char* name, const ExtremesMatrix& made) {
-        std::filesystem::create_directory(folder.path() / name);
-        std::ofstream(folder.path() / name / "extremes.json")
-            << results::to_text(results::to_json(made));
-    };
-    write("base", matrix({step("90", "good")}));
-    write("now", matrix({step("90", "broken", "not-finite")}));
-    std::filesystem::create_directory(folder.path() / "other");
-    const auto compare = [&](std::vector<std::string> arguments) {
-        for (std::string& word : arguments) {
-            if (!word.starts_with('-')) word = (folder.path() / word).string();
-        }
-        arguments.insert(arguments.begin(), "compare");
-        return test::run_lodbench(arguments, folder.path());
-    };
-    const test::Finished gated = compare({"base", "now", "--gate"});
-    EXPECT_EQ(gated.status, 1);
-    EXPECT_THAT(gated.output, HasSubstr("90: good -> broken: not-finite"));
-    EXPECT_EQ(compare({"base", "now"}).status, 0);
-    const test::Finished refused = compare({"base", "other"});
-    EXPECT_EQ(refused.status, 2);
-    EXPECT_THAT(refused.output, HasSubstr("lodbench extremes"));
 }
 
 }  // namespace
