@@ -111,7 +111,6 @@ int run_extremes(Options& options) {
     if (options.list) return list_axes(battery);
     options.finish();
     const auto plugins = find_plugins(options.request.plugin_dirs);
-    extremes::begin_folder(options.request.out, options.request.resume);
     Progress progress;
     const auto watch = [&](const std::string& method, const std::string& axis,
                            const results::ExtremesStep& step, std::size_t number,

@@ -49,6 +49,34 @@ struct Entry {
     ExtremesStep step;
 };
 
+/// Makes the folder, or takes up one that this made (`resume`). Throws InputError for any other
+/// that is not empty, and for one that is not to be resumed.
+void begin_folder(const fs::path& out, bool resume) {
+    std::error_code error;
+    if (fs::is_symlink(out, error)) {
+        throw InputError(
+            fmt::format("{}: a symbolic link; name the folder itself with --out", out.string()));
+    }
+    if (fs::is_regular_file(out / kSteps, error)) {
+        if (resume) return;
+        throw InputError(
+            fmt::format("{}: this folder already holds a battery; go on with it by "
+                        "the same command and --resume, or choose another with --out",
+                        out.string()));
+    }
+    if (fs::exists(out, error) && !(fs::is_directory(out, error) && fs::is_empty(out, error))) {
+        throw InputError(fmt::format(
+            "{}: not a folder that `lodbench extremes` began; choose another with --out",
+            out.string()));
+    }
+    fs::create_directories(out / "shots", error);
+    if (error) {
+        throw EnvironmentError(
+            fmt::format("cannot make the folder {}: {}", out.string(), error.message()));
+    }
+    base::write_whole(out / kSteps, "");
+}
+
 class Run {
 public:
     Run(const Battery& battery, const Request& request,
@@ -56,6 +84,7 @@ public:
         : battery_(battery), request_(request), watch_(watch) {
         choose_methods(plugins);
         choose_steps();
+        begin_folder(request.out, request.resume);
         if (request.resume) read_entries();
         matrix_.form = request.quick ? "quick" : "whole";
         matrix_.version = run::machine_context()["tool_version"].asString();
@@ -356,32 +385,6 @@ ExtremesStep Run::measured(const run::MethodInfo& method, const std::string& axi
 }
 
 }  // namespace
-
-void begin_folder(const fs::path& out, bool resume) {
-    std::error_code error;
-    if (fs::is_symlink(out, error)) {
-        throw InputError(
-            fmt::format("{}: a symbolic link; name the folder itself with --out", out.string()));
-    }
-    if (fs::is_regular_file(out / kSteps, error)) {
-        if (resume) return;
-        throw InputError(
-            fmt::format("{}: this folder already holds a battery; go on with it by "
-                        "the same command and --resume, or choose another with --out",
-                        out.string()));
-    }
-    if (fs::exists(out, error) && !(fs::is_directory(out, error) && fs::is_empty(out, error))) {
-        throw InputError(fmt::format(
-            "{}: not a folder that `lodbench extremes` began; choose another with --out",
-            out.string()));
-    }
-    fs::create_directories(out / "shots", error);
-    if (error) {
-        throw EnvironmentError(
-            fmt::format("cannot make the folder {}: {}", out.string(), error.message()));
-    }
-    base::write_whole(out / kSteps, "");
-}
 
 ExtremesMatrix run(const Battery& battery, const Request& request,
                    const std::vector<run::PluginListing>& plugins, const StepWatch& watch) {

@@ -13,7 +13,7 @@
 namespace lodbench::extremes {
 
 struct Request {
-    std::filesystem::path out;         ///< results folder, begun
+    std::filesystem::path out;         ///< results folder
     std::vector<std::string> methods;  ///< empty: all that are no examples
     std::vector<std::string> axes;     ///< empty: all
     std::vector<std::string> steps;    ///< by name; empty: all
@@ -29,12 +29,9 @@ using StepWatch =
     std::function<void(const std::string& method, const std::string& axis,
                        const results::ExtremesStep& step, std::size_t number, std::size_t count)>;
 
-/// Makes the folder, or takes up one that this made (`resume`). Throws InputError for any other
-/// that is not empty, and for one that is not to be resumed.
-void begin_folder(const std::filesystem::path& out, bool resume);
-
 /// Flies what was asked for, or with `resume` what is missing, and writes each step when it is
-/// flown. Throws InputError, EnvironmentError, run::Interrupted.
+/// flown. The folder is made, or taken up where this made it; any other that is not empty is
+/// refused. Throws InputError, EnvironmentError, run::Interrupted.
 [[nodiscard]] results::ExtremesMatrix run(const Battery& battery, const Request& request,
                                           const std::vector<run::PluginListing>& plugins,
                                           const StepWatch& watch);
