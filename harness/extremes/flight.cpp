@@ -277,21 +277,25 @@ SurfaceChange compare_surfaces(const measure::CapturedSurface& original,
     SurfaceChange change;
     const auto count = std::min(original.triangle_count(), copy.triangle_count());
     change.triangles = std::max(original.triangle_count(), copy.triangle_count()) - count;
-    bool in_order = change.triangles == 0;
+    double by_vertices = change.triangles == 0 ? 0 : std::numeric_limits<double>::infinity();
     for (std::size_t triangle = 0; triangle < count; ++triangle) {
         bool same = true;
         for (std::size_t v = 3 * triangle; v < 3 * triangle + 3; ++v) {
             const glm::dvec3 expected = glm::dvec3(original.vertices[v]) * scale;
             same = same && same_bits(copy.vertices[v], glm::vec3(expected));
-            const double distance = glm::length(glm::dvec3(copy.vertices[v]) - expected) / scale;
-            change.moved_m = std::max(change.moved_m, distance);
+            by_vertices =
+                std::max(by_vertices, glm::length(glm::dvec3(copy.vertices[v]) - expected) / scale);
         }
         change.triangles += !same;
     }
-    // Metres apart, it is another triangle: what counts is the surface that all of them make.
-    constexpr double kSameVertex = 1e-2;
-    in_order = in_order && change.moved_m < kSameVertex;
-    if (!in_order) change.moved_m = moved_at_samples(original, copy, world, changed_world, scale);
+    change.moved_m = by_vertices;
+    // Far apart, they may be other triangles, or in another order: what counts is the surface that
+    // all of them make.
+    constexpr double kSameVertex = 1e-3;
+    if (by_vertices > kSameVertex) {
+        change.moved_m =
+            std::min(by_vertices, moved_at_samples(original, copy, world, changed_world, scale));
+    }
     return change;
 }
 

@@ -30,8 +30,8 @@ struct SurfaceChange {
     std::uint64_t triangles = 0;  ///< that differ in a bit, or are there once
     double moved_m = 0;           ///< greatest distance, in metres of the world as it is
 };
-/// `copy` in the changed world against `original`. Triangle by triangle where both are the same in
-/// number; else, and where the order is another, by their heights at the samples of `terrain`.
+/// `copy` in the changed world against `original`: vertex by vertex where both are the same in
+/// number, and by their heights at the samples; the lesser counts.
 [[nodiscard]] SurfaceChange compare_surfaces(const measure::CapturedSurface& original,
                                              const measure::CapturedSurface& copy,
                                              const World& world, const World& changed_world,
