@@ -39,8 +39,9 @@ struct Axis {
 
 /// A failure that the paper's method has in any implementation.
 struct Inherent {
-    std::string method, axis;
-    std::vector<std::string> steps;  ///< empty: any
+    std::string method;
+    std::string axis;                ///< "": any
+    std::vector<std::string> steps;  ///< of the axis; empty: any
     std::vector<std::string> what;   ///< kinds of failure; empty: any
     std::string why;                 ///< one line
     std::string where;               ///< "inherent.toml:12"

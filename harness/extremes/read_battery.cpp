@@ -96,6 +96,21 @@ Axis read_axis(const fs::path& file) {
     return axis;
 }
 
+/// Its axis and steps have to be there.
+void require_known(const Inherent& inherent, const std::vector<Axis>& axes,
+                   const Section& section) {
+    if (inherent.axis.empty()) {
+        if (!inherent.steps.empty()) section.refuse("steps", "of which axis? Write axis = \"...\"");
+        return;
+    }
+    const auto axis = std::ranges::find(axes, inherent.axis, &Axis::id);
+    if (axis == axes.end()) section.refuse("axis", "no axis of the battery has this name");
+    for (const std::string& step : inherent.steps) {
+        if (std::ranges::find(axis->steps, step, &Step::name) != axis->steps.end()) continue;
+        section.refuse("steps", fmt::format("axis {} has no step \"{}\"", axis->id, step));
+    }
+}
+
 std::vector<Inherent> read_inherent(const fs::path& file, const std::vector<Axis>& axes) {
     const toml::table table = terrain::read_toml(file);
     Section top(table, file, "");
@@ -103,18 +118,13 @@ std::vector<Inherent> read_inherent(const fs::path& file, const std::vector<Axis
     for (Section& section : top.sections("inherent")) {
         Inherent& inherent = list.emplace_back();
         inherent.method = required_text(section, "method");
-        inherent.axis = required_text(section, "axis");
+        inherent.axis = section.text("axis").value_or("");
         inherent.steps = texts(section, "steps");
         inherent.what = texts(section, "what");
         inherent.why = required_text(section, "why");
         inherent.where = section.where();
         section.refuse_unknown(kKind);
-        const auto axis = std::ranges::find(axes, inherent.axis, &Axis::id);
-        if (axis == axes.end()) section.refuse("axis", "no axis of the battery has this name");
-        for (const std::string& step : inherent.steps) {
-            if (std::ranges::find(axis->steps, step, &Step::name) != axis->steps.end()) continue;
-            section.refuse("steps", fmt::format("axis {} has no step \"{}\"", axis->id, step));
-        }
+        require_known(inherent, axes, section);
     }
     top.refuse_unknown(kKind);
     return list;
@@ -132,7 +142,8 @@ bool Inherent::covers(const std::string& of_method, const std::string& of_axis,
     const auto names = [](const std::vector<std::string>& list, const std::string& name) {
         return list.empty() || std::ranges::find(list, name) != list.end();
     };
-    return method == of_method && axis == of_axis && names(steps, step) && names(what, fault);
+    return method == of_method && (axis.empty() || axis == of_axis) && names(steps, step) &&
+           names(what, fault);
 }
 
 const Axis& Battery::axis(const std::string& id) const {
