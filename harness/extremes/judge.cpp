@@ -210,4 +210,27 @@ void explain(std::vector<ExtremesFault>& faults, const Battery& battery, const s
     }
 }
 
+std::vector<std::string> unneeded_reasons(const Battery& battery,
+                                          const results::ExtremesMatrix& matrix) {
+    std::vector<std::string> words;
+    for (const Inherent& inherent : battery.inherent) {
+        bool flown = false, needed = false;
+        for (const results::ExtremesCell& cell : matrix.cells) {
+            if (cell.method != inherent.method) continue;
+            flown = flown || inherent.axis.empty() || cell.axis == inherent.axis;
+            for (const results::ExtremesStep& step : cell.steps) {
+                needed =
+                    needed || std::ranges::any_of(step.faults, [&](const ExtremesFault& fault) {
+                        return inherent.covers(cell.method, cell.axis, step.step, fault.what);
+                    });
+            }
+        }
+        if (flown && !needed) {
+            words.push_back(fmt::format("{}: no failure needs this reason any more; remove it",
+                                        inherent.where));
+        }
+    }
+    return words;
+}
+
 }  // namespace lodbench::extremes

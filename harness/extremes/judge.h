@@ -25,4 +25,9 @@ namespace lodbench::extremes {
 void explain(std::vector<results::ExtremesFault>& faults, const Battery& battery,
              const std::string& method, const std::string& axis, const std::string& step);
 
+/// Reasons for failures of methods and axes of the matrix that none of its failures needs any more,
+/// in words.
+[[nodiscard]] std::vector<std::string> unneeded_reasons(const Battery& battery,
+                                                        const results::ExtremesMatrix& matrix);
+
 }  // namespace lodbench::extremes

@@ -108,6 +108,12 @@ public:
                 matrix_.cells.push_back(std::move(cell));
             }
         }
+        // Of some axes or steps alone the failures that a reason is for may not have been flown.
+        if (!request_.quick && request_.axes.empty() && request_.steps.empty()) {
+            for (std::string& words : unneeded_reasons(battery_, matrix_)) {
+                matrix_.warnings.push_back(std::move(words));
+            }
+        }
         return std::move(matrix_);
     }
 

@@ -172,5 +172,19 @@ TEST(Judge, what_is_inherent_is_explained_where_it_was_said_and_nowhere_else) {
     }
 }
 
+TEST(Judge, a_reason_that_no_failure_needs_any_more_is_told) {
+    Battery battery;
+    battery.inherent = {{"m", "lens", {}, {"bound"}, "why", "inherent.toml:3"},
+                        {"m", "", {}, {"cracks"}, "why", "inherent.toml:9"},
+                        {"elsewhere", "lens", {}, {}, "why", "inherent.toml:15"}};
+    results::ExtremesMatrix matrix;
+    results::ExtremesCell& cell = matrix.cells.emplace_back();
+    cell.method = "m";
+    cell.axis = "lens";
+    cell.steps.emplace_back().faults.push_back({"cracks", "", {}, {}, "", "words", ""});
+    EXPECT_THAT(unneeded_reasons(battery, matrix),
+                testing::ElementsAre(HasSubstr("inherent.toml:3: no failure needs this reason")));
+}
+
 }  // namespace
 }  // namespace lodbench::extremes
