@@ -124,8 +124,7 @@ std::string to_markdown(const ExtremesMatrix& matrix) {
 }
 
 void write_all(const ExtremesMatrix& matrix, const std::filesystem::path& folder) {
-    base::write_whole(folder / results::kExtremesFile,
-                      results::to_text(to_json(matrix), true) + "\n");
+    base::write_whole(folder / results::kExtremesFile, results::to_text(to_json(matrix)) + "\n");
     base::write_whole(folder / "extremes.md", to_markdown(matrix));
     base::write_whole(folder / "extremes.html", to_html(matrix, folder));
 }

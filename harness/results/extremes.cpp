@@ -14,6 +14,18 @@ namespace {
 constexpr std::array kOutcomes = {"good", "degraded", "broken", "dead"};
 constexpr std::array kGrades = {"stable", "degrades", "breaks", "dies"};
 
+/// What was not measured is not there, which reads as null: a thousand steps lack most figures.
+void drop_nulls(Json::Value& json) {
+    if (json.isObject()) {
+        for (const std::string& name : json.getMemberNames()) {
+            if (json[name].isNull()) json.removeMember(name);
+        }
+    }
+    if (json.isObject() || json.isArray()) {
+        for (Json::Value& value : json) drop_nulls(value);
+    }
+}
+
 void require_known(const ExtremesMatrix& matrix, const std::string& where) {
     for (const ExtremesCell& cell : matrix.cells) {
         for (const ExtremesStep& step : cell.steps) {
@@ -79,6 +91,7 @@ Json::Value to_json(const ExtremesMatrix& matrix) {
     for (Json::ArrayIndex i = 0; i < json["axes"].size(); ++i) {
         json["axes"][i]["steps"] = array_of(matrix.axes[i].steps);
     }
+    drop_nulls(json);
     return json;
 }
 

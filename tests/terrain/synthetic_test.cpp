@@ -181,7 +181,7 @@ TEST(Synthetic, documented_parameters_are_the_known_ones) {
 TEST(Synthetic, refuses_unknown_names_and_lists_the_known) {
     EXPECT_EQ(refusal(form("mountain", 9, 9)),
               "unknown synthetic terrain 'mountain'; known: plane, ramp, sphere-cap, bump, step, "
-              "ridged");
+              "checkerboard, ridged, terraces");
     TerrainSource source = form("ramp", 9, 9);
     source.shape["slope"] = 1;
     source.where = "scenario.toml:12";
