@@ -47,6 +47,8 @@ std::string quoted(const std::string& word) {
 struct Entry {
     std::string method, axis, plugin;  ///< the plugin's checksum: another one is flown anew
     ExtremesStep step;
+    /// As the matrix has them; of the mild setting.
+    std::string terrain, terrain_checksum, device;
 };
 
 /// Makes the folder, or takes up one that this made (`resume`). Throws InputError for any other
@@ -138,8 +140,8 @@ private:
     [[nodiscard]] std::string command_for(const std::string& method, const std::string& axis,
                                           const std::string& step) const;
     void keep(const std::string& method, const std::string& axis, const ExtremesStep& step);
-    [[nodiscard]] const ExtremesStep* known(const std::string& method, const std::string& axis,
-                                            const std::string& step) const;
+    [[nodiscard]] const Entry* known(const std::string& method, const std::string& axis,
+                                     const std::string& step) const;
     void tell(const std::string& method, const std::string& axis, const ExtremesStep& step) {
         watch_(method, axis, step, ++number_, count_);
     }
@@ -218,6 +220,10 @@ void Run::read_entries() {
         entry.axis = results::get_string(json, "axis", where);
         entry.plugin = results::get_string(json, "plugin", where);
         entry.step = results::read_record<ExtremesStep>(json["step"], where);
+        if (entry.axis != kMild) continue;
+        entry.terrain = results::get_string(json, "terrain", where);
+        entry.terrain_checksum = results::get_string(json, "terrain_checksum", where);
+        entry.device = results::get_string(json, "device", where);
     }
 }
 
@@ -254,23 +260,31 @@ void Run::keep(const std::string& method, const std::string& axis, const Extreme
     json["axis"] = axis;
     json["plugin"] = plugin_;
     json["step"] = results::encode(step);
+    if (axis == kMild) {
+        json["terrain"] = matrix_.terrain;
+        json["terrain_checksum"] = matrix_.terrain_checksum;
+        json["device"] = matrix_.device;
+    }
     base::append_line(request_.out / kSteps, results::to_text(json));
 }
 
-const ExtremesStep* Run::known(const std::string& method, const std::string& axis,
-                               const std::string& step) const {
+const Entry* Run::known(const std::string& method, const std::string& axis,
+                        const std::string& step) const {
     const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {
         return entry.method == method && entry.axis == axis && entry.plugin == plugin_ &&
                entry.step.step == step;
     });
-    return found == entries_.end() ? nullptr : &found->step;
+    return found == entries_.end() ? nullptr : &*found;
 }
 
 void Run::fly_mild(const run::MethodInfo& method) {
     mild_.reset();
     ExtremesStep step;
-    if (const ExtremesStep* before = known(method.id, kMild, kMild)) {
-        step = *before;
+    if (const Entry* before = known(method.id, kMild, kMild)) {
+        step = before->step;
+        matrix_.terrain = before->terrain;
+        matrix_.terrain_checksum = before->terrain_checksum;
+        matrix_.device = before->device;
     } else {
         Probe probe = probe_of(method);
         probe.overrides = request_.overrides;
@@ -321,8 +335,8 @@ std::optional<ExtremesStep> Run::refused(const run::MethodInfo& method, const St
 
 ExtremesStep Run::fly_step(const run::MethodInfo& method, const Axis& axis, const Step& step) {
     ExtremesStep result;
-    if (const ExtremesStep* before = known(method.id, axis.id, step.name)) {
-        result = *before;
+    if (const Entry* before = known(method.id, axis.id, step.name)) {
+        result = before->step;
     } else {
         result = flown(method, axis, step);
         keep(method.id, axis.id, result);

@@ -51,6 +51,9 @@ TEST_F(ExtremesCommand, writes_the_matrix_in_three_forms_and_takes_up_what_was_i
     EXPECT_EQ(again.status, 0) << again.output;
     results::ExtremesMatrix second = matrix();
     EXPECT_TRUE(compare::compare_extremes(first, second).changes.empty());
+    EXPECT_FALSE(first.device.empty());
+    EXPECT_EQ(second.device, first.device);
+    EXPECT_EQ(second.terrain_checksum, first.terrain_checksum);
     EXPECT_EQ(second.find("every-sample", "origin")->steps.front().seconds,
               first.find("every-sample", "origin")->steps.front().seconds)
         << "was flown again";
