@@ -47,7 +47,7 @@ function(lodbench_tests name)
     set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
     add_dependencies(${program} lodbench_under_test)
     target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${arg_INCLUDES})
-    target_link_libraries(${program} PRIVATE ${arg_LIBRARIES} lodbench_reproduce lodbench_conformance lodbench_plugin
+    target_link_libraries(${program} PRIVATE ${arg_LIBRARIES} lodbench_reproduce lodbench_extremes lodbench_conformance lodbench_plugin
                           PkgConfig::jsoncpp GTest::gmock GTest::gtest_main lodbench_warnings)
     target_compile_definitions(${program} PRIVATE
       $<$<BOOL:${LODBENCH_WITH_GDAL}>:LODBENCH_WITH_GDAL>

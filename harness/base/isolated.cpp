@@ -10,6 +10,7 @@
 #include "api/error.h"
 #include "base/child_process.h"
 #include "base/printable.h"
+#include "base/process_tree.h"
 
 namespace lodbench::base {
 
@@ -39,6 +40,11 @@ std::string answer_of(const std::function<std::string()>& work) {
 
 Answer run_isolated(double seconds, const std::function<std::string()>& work,
                     const std::function<std::string()>& watch) {
+    return run_isolated(Allowance{seconds, 0}, work, watch);
+}
+
+Answer run_isolated(const Allowance& allowance, const std::function<std::string()>& work,
+                    const std::function<std::string()>& watch) {
     const FileDescriptor file = memory_file("lodbench: answer");
     ChildProcess child([&] {
         // A crash on purpose (or not) should leave a line in the report, not a core file.
@@ -49,14 +55,22 @@ Answer run_isolated(double seconds, const std::function<std::string()>& work,
     // A signal to this process ends a wait early.
     using Clock = std::chrono::steady_clock;
     const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                             std::chrono::duration<double>(seconds));
+                                             std::chrono::duration<double>(allowance.seconds));
     for (bool ended = false; !ended;) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
         if (left.count() <= 0) {
-            return {Ending::timed_out, fmt::format("gave no answer within {:g} s", seconds)};
+            return {Ending::timed_out,
+                    fmt::format("gave no answer within {:g} s", allowance.seconds)};
         }
         ended = child.wait(std::min(left, kWatchInterval));
-        if (ended || !watch) continue;
+        if (ended) continue;
+        if (allowance.memory_bytes > 0 && resident_bytes(child.pid()) > allowance.memory_bytes) {
+            return {.ending = Ending::timed_out,
+                    .text = fmt::format("exceeded the memory limit of {} MiB",
+                                        allowance.memory_bytes >> 20),
+                    .out_of_memory = true};
+        }
+        if (!watch) continue;
         if (std::string words = watch(); !words.empty()) {
             return {Ending::timed_out, std::move(words)};
         }

@@ -48,7 +48,8 @@ std::ptrdiff_t finished_cells(const std::filesystem::path& out) {
     std::ptrdiff_t count = 0;
     std::error_code none;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(out, none)) {
-        if (entry.path().filename() != "cells.jsonl") continue;
+        const auto name = entry.path().filename();
+        if (name != "cells.jsonl" && name != "steps.jsonl") continue;
         count += std::ranges::count(base::read_text(entry.path()), '\n');
     }
     return count;

@@ -17,6 +17,7 @@ void add_match(CLI::App& app, int& status);
 void add_economy(CLI::App& app, int& status);
 void add_cell(CLI::App& app, int& status);  ///< hidden: the child process of `run`
 void add_reproduce(CLI::App& app, int& status);
+void add_extremes(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);
 void add_merge(CLI::App& app, int& status);
 void add_compare(CLI::App& app, int& status);

@@ -15,6 +15,7 @@
 #include "cli/confirm.h"
 #include "cli/options.h"
 #include "compare/comparison.h"
+#include "compare/extremes.h"
 #include "report/comparison.h"
 #include "report/junit.h"
 #include "results/json.h"
@@ -49,11 +50,33 @@ void print(const compare::Comparison& comparison, const Options& options) {
     }
 }
 
+results::ExtremesMatrix read_matrix(const fs::path& path) {
+    expect_results_folder(path);
+    if (results::holds_extremes(path)) return results::read_extremes_folder(path);
+    throw InputError(fmt::format("{}: the other folder is of `lodbench extremes`, this one is not",
+                                 path.string()));
+}
+
+int compare_matrices(const Options& options) {
+    const auto comparison =
+        compare::compare_extremes(read_matrix(options.base), read_matrix(options.now));
+    if (options.json) {
+        base::print("{}\n", results::to_text(compare::to_json(comparison), true));
+    } else {
+        base::print("{}", options.markdown ? compare::to_markdown(comparison)
+                                           : compare::to_text(comparison));
+    }
+    return comparison.exit_status(options.gate);
+}
+
 int compare_folders(const Options& options) {
     std::error_code error;
     if (fs::equivalent(options.base, options.now, error)) {
         throw InputError(fmt::format("{} and {} are one folder: there is nothing to compare",
                                      options.base.string(), options.now.string()));
+    }
+    if (results::holds_extremes(options.base) || results::holds_extremes(options.now)) {
+        return compare_matrices(options);
     }
     const results::ResultFolder base = read_folder(options.base), now = read_folder(options.now);
     compare::Rules rules;

@@ -151,7 +151,7 @@ void read_terrain(Section& top, const std::filesystem::path& folder, Scenario& s
 
 void read_camera(Section& top, Scenario& scenario) {
     if (auto camera = top.section("camera")) {
-        if (const auto fov = camera->number("vertical_fov", {1, 170})) {
+        if (const auto fov = camera->number("vertical_fov", {1e-3, 179.9})) {
             scenario.vertical_fov = glm::radians(*fov);
         }
         set(scenario.near_plane, camera->number("near", {1e-3, 1e6}));

@@ -37,6 +37,10 @@ const std::vector<SyntheticForm>& forms() {
          {{"base", "0", "height of the western plane, metres"},
           {"height", "100", "of the eastern plane above the western, metres"},
           {"column", "columns / 2, rounded down", "the first raised column"}}},
+        {"checkerboard",
+         "every second sample raised, those diagonally beside each other alike",
+         {{"base", "0", "height of the lower samples, metres"},
+          {"height", "100", "of the raised samples above them, metres"}}},
         {"ridged",
          "ridged multifractal (Musgrave 1994) on gradient noise",
          {{"base", "0", "the least height possible, metres"},
@@ -45,6 +49,15 @@ const std::vector<SyntheticForm>& forms() {
           {"octaves", "10", "1 to 24; each has half the wavelength of the one before"},
           {"persistence", "0.5", "amplitude of an octave over that of the one before, 0 to 1"},
           {"gain", "2", "how much a ridge sharpens the octaves above it, 0 to 10"}}},
+        {"terraces",
+         "relief as games have it: ridged, cut into level steps with cliffs between them",
+         {{"base", "0", "the lowest step, metres"},
+          {"height", "2000", "the highest step possible above the base, metres"},
+          {"step", "100", "metres from one level to the next, above 0"},
+          {"wavelength", "a quarter of the longer side", "as for ridged"},
+          {"octaves", "10", "as for ridged"},
+          {"persistence", "0.5", "as for ridged"},
+          {"gain", "2", "as for ridged"}}},
     };
     return all;
 }
@@ -160,6 +173,12 @@ HeightFunction step(const Shape& shape, const TerrainInfo& info) {
                int, int column) { return column >= first ? base + height : base; };
 }
 
+HeightFunction checkerboard(const Shape& shape) {
+    return [base = shape.real("base", 0), height = shape.real("height", 100)](int row, int column) {
+        return (row + column) % 2 == 0 ? base : base + height;
+    };
+}
+
 /// Unit vectors in uniform directions: hashed points of the square, kept where they fall inside the
 /// unit circle, made unit length. No sine is needed.
 std::vector<glm::dvec2> make_gradients() {
@@ -257,6 +276,15 @@ HeightFunction ridged(const Shape& shape, const TerrainInfo& info, std::uint64_t
     };
 }
 
+HeightFunction terraces(const Shape& shape, const TerrainInfo& info, std::uint64_t seed) {
+    const double base = shape.real("base", 0);
+    const double step = shape.real("step", 100);
+    if (!(step > 0)) shape.refuse("step", step, "it must be above 0");
+    return [base, step, relief = ridged(shape, info, seed)](int row, int column) {
+        return base + step * std::floor((relief(row, column) - base) / step);
+    };
+}
+
 HeightFunction make_function(const TerrainSource& source, const TerrainInfo& info) {
     const SyntheticForm& form = find_form(source.synthetic);
     const Shape shape(form, source.shape);
@@ -266,6 +294,8 @@ HeightFunction make_function(const TerrainSource& source, const TerrainInfo& inf
     if (name == "sphere-cap") return sphere_cap(shape, info);
     if (name == "bump") return bump(shape, info);
     if (name == "step") return step(shape, info);
+    if (name == "checkerboard") return checkerboard(shape);
+    if (name == "terraces") return terraces(shape, info, source.seed);
     return ridged(shape, info, source.seed);
 }
 

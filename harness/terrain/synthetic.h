@@ -22,7 +22,7 @@ struct SyntheticForm {
     std::vector<ShapeParam> params;
 };
 
-/// All forms: plane, ramp, sphere-cap, bump, step, ridged.
+/// All forms: plane, ramp, sphere-cap, bump, step, checkerboard, ridged, terraces.
 [[nodiscard]] std::span<const SyntheticForm> synthetic_forms();
 
 /// Metres between samples where the source gives none.

@@ -50,6 +50,24 @@ TEST(Isolated, says_which_signal_or_exit_ended_the_work) {
         << "left without an answer";
 }
 
+TEST(Isolated, ends_work_that_takes_more_memory_than_it_may) {
+    const auto take = [](std::size_t bytes) {
+        return [bytes]() -> std::string {
+            const std::string taken(bytes, 'x');
+            usleep(1'500'000);  // it is looked at five times a second
+            return std::to_string(taken.size());
+        };
+    };
+    const Allowance allowance{.seconds = 20, .memory_bytes = 256ULL << 20};
+    const Answer greedy = run_isolated(allowance, take(std::size_t(512) << 20));
+    EXPECT_EQ(greedy.ending, Ending::timed_out);
+    EXPECT_TRUE(greedy.out_of_memory);
+    EXPECT_EQ(greedy.text, "exceeded the memory limit of 256 MiB");
+    const Answer modest = run_isolated(allowance, take(std::size_t(16) << 20));
+    EXPECT_EQ(modest.ending, Ending::answered) << modest.text;
+    EXPECT_FALSE(modest.out_of_memory);
+}
+
 TEST(Isolated, ends_work_that_does_not_end) {
     const Answer endless = ask(
         []() -> std::string {

@@ -25,6 +25,7 @@ MAY_INCLUDE = {
     "report": {"api", "base", "measure", "results", "compare", "picture", "trend"},
     "run": {"api", "base", "common", "gl", "platform", "terrain", "scenario", "measure", "results", "picture"},
     "conformance": {"api", "base", "common", "gl", "measure", "results", "run"},
+    "extremes": {"api", "base", "terrain", "scenario", "measure", "results", "report", "run"},
     "reproduce": {"api", "base", "terrain", "scenario", "measure", "results", "report", "run"},
 }
 

@@ -239,7 +239,7 @@ TEST(Scenario, values_out_of_range_name_the_range) {
         {"rate_hz = nan\n", "rate_hz = nan: not a finite number"},
         {"rate_hz = -inf\n", "rate_hz = -inf: not a finite number"},
         {"[camera]\nvertical_fov = 180\n",
-         "vertical_fov = 180: out of range; write a number from 1 to 170"},
+         "vertical_fov = 180: out of range; write a number from 0.001 to 179.9"},
         {"[camera]\nnear = 0\n", "near = 0: out of range"},
         {"[viewport]\nwidth = 0\n",
          "width = 0: out of range; write a whole number from 1 to 16384"},

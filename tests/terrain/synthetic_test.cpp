@@ -75,6 +75,39 @@ TEST(Synthetic, sphere_cap_lies_on_its_sphere) {
               "339.034 m from the centre");
 }
 
+TEST(Synthetic, checkerboard_raises_every_second_sample) {
+    TerrainSource source = form("checkerboard", 3, 4);
+    source.shape = {{"base", -5}, {"height", 30}};
+    const auto field = load_terrain(source);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            EXPECT_EQ(at(*field, row, column), (row + column) % 2 == 0 ? -5.0F : 25.0F);
+        }
+    }
+}
+
+TEST(Synthetic, terraces_are_the_ridged_relief_cut_into_levels) {
+    TerrainSource source = form("terraces", 65, 65);
+    source.shape = {{"base", 7}, {"height", 600}, {"step", 50}};
+    source.seed = 3;
+    const auto field = load_terrain(source);
+    source.synthetic = "ridged";
+    source.shape.erase("step");
+    const auto relief = load_terrain(source);
+    int levels_met = 0;
+    for (std::size_t i = 0; i < field->samples().size(); ++i) {
+        const float below = relief->samples()[i] - field->samples()[i];
+        EXPECT_GE(below, -1e-4);  // the relief is rounded to float
+        EXPECT_LT(below, 50 + 1e-4);
+        EXPECT_EQ(std::fmod(double(field->samples()[i]) - 7, 50), 0);
+        levels_met += i > 0 && field->samples()[i] != field->samples()[i - 1];
+    }
+    EXPECT_GT(levels_met, 100) << "cliffs between neighbours";
+    source.synthetic = "terraces";
+    source.shape["step"] = 0;
+    EXPECT_EQ(refusal(source), "synthetic terrain 'terraces': step = 0: it must be above 0");
+}
+
 TEST(Synthetic, bump_raises_one_sample) {
     TerrainSource source = form("bump", 5, 7);
     const auto field = load_terrain(source);
@@ -148,7 +181,7 @@ TEST(Synthetic, documented_parameters_are_the_known_ones) {
 TEST(Synthetic, refuses_unknown_names_and_lists_the_known) {
     EXPECT_EQ(refusal(form("mountain", 9, 9)),
               "unknown synthetic terrain 'mountain'; known: plane, ramp, sphere-cap, bump, step, "
-              "ridged");
+              "checkerboard, ridged, terraces");
     TerrainSource source = form("ramp", 9, 9);
     source.shape["slope"] = 1;
     source.where = "scenario.toml:12";

@@ -112,6 +112,29 @@ void compare(const Terrain& terrain, const ErrorsPass& pass, const std::vector<f
         << "a texel that is no group's centre";
 }
 
+// w = 0 at the sample on which the eye stands, and at all in the plane through it; the near plane
+// as near as a scenario may have it, so that hardly anything else hides behind it.
+TEST(MultiContextErrors, have_a_value_where_w_is_zero) {
+    const auto terrain = rough(65, 65, 3);
+    const TerrainInfo& info = terrain->info();
+    GlTest gl;
+    Errors errors(gl, *terrain, {.k = 17});
+    Tally tally;
+    for (const glm::dvec3& direction : {glm::dvec3(0, 1, 0), {0, 0, -1}, {0, 0, 1}, {1, 1, -0.5}}) {
+        float height = 0;
+        terrain->read({32, 31, 1, 1}, {&height, 1});
+        Camera camera;
+        camera.position = {info.position(32, 31), height};
+        camera.orientation = Camera::look(direction);
+        camera.near_plane = 1e-3;
+        (void)errors.run(camera);
+        compare(*terrain, errors.pass(), errors.texture(), camera, tally);
+        if (HasFatalFailure()) FAIL() << "looking along " << direction.x << ", " << direction.y;
+    }
+    EXPECT_GT(tally.unbounded, 0U);
+    EXPECT_GT(tally.positive, tally.unbounded);
+}
+
 TEST(MultiContextErrors, equal_double_precision_at_every_level_on_random_terrain) {
     std::mt19937 random(1);
     Tally tally;
