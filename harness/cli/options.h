@@ -27,7 +27,7 @@ void add_device(CLI::App& command, std::string& device);
 /// An option NAME whose whole number takes the place of the scenario's value at `key`.
 CLI::Option* add_override(CLI::App& command, scenario::Overrides& overrides,
                           const std::string& name, const std::string& key, const std::string& help);
-/// --frames, --size, and --override for every other key; they throw InputError while the command
+/// --frames, --size, --camera, --flight, and --override for every other key; they throw InputError while the command
 /// line is read.
 void add_overrides(CLI::App& command, scenario::Overrides& overrides);
 

@@ -25,6 +25,8 @@ MAY_INCLUDE = {
     "report": {"api", "base", "measure", "results", "compare", "picture", "trend"},
     "run": {"api", "base", "common", "gl", "platform", "terrain", "scenario", "measure", "results", "picture"},
     "conformance": {"api", "base", "common", "gl", "measure", "results", "run"},
+    "window": {"api", "base", "gl", "terrain", "scenario", "measure", "results", "picture", "run"},
+    "view": {"api", "base", "scenario", "terrain", "measure", "results", "picture", "run", "window", "cli"},
     "reproduce": {"api", "base", "terrain", "scenario", "measure", "results", "report", "run"},
 }
 
