@@ -79,6 +79,7 @@ void Session::start() {
         ended_ = false;
     }
     waiting_ = 0;
+    answered_ = false;
     reader_ = std::thread([this] { read(); });
 }
 
@@ -126,6 +127,7 @@ void Session::ask(const Json::Value& message) {
 
 void Session::note(const Json::Value& answer) {
     if (waiting_ > 0) --waiting_;
+    answered_ = true;
     if (answer.isMember("failed")) failed_ = answer["failed"].asString();
     if (answer["did"] != "open") {
         if (!failed_.empty() || answer.isMember("refused")) return;
@@ -172,6 +174,12 @@ void Session::replace() {
     failed_.clear();
     method_.clear();
     stop();
+    if (!answered_) {  // nor would the next: it waits until it is asked for
+        waiting_ = 0;
+        asked_.reset();
+        good_.reset();
+        return;
+    }
     start();
     const bool another = good_ && asked_ && run::write_spec(*good_) != run::write_spec(*asked_);
     if (!another) {

@@ -39,7 +39,7 @@ public:
     void ask(const Json::Value& message);
     /// Answers that came since, in order. A process that has ended is seen here: `fallen` says so,
     /// and a new one is started at once, with the method that last drew before the fallen one,
-    /// unless that is the one which fell.
+    /// unless that is the one which fell. Where it never answered, none is: neither would the next.
     [[nodiscard]] std::vector<Json::Value> take();
     /// Which method fell and why, since it was last asked; "" for none.
     [[nodiscard]] std::string fallen();
@@ -78,6 +78,7 @@ private:
     std::optional<run::CellSpec> asked_, good_;  // to be opened; the last that was
     std::string method_, failed_, fallen_, asked_to_end_;
     int waiting_ = 0;
+    bool answered_ = false;  // the process that runs now
 };
 
 }  // namespace lodbench::window

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scenario/flight_path.h"
+#include "support/run_lodbench.h"
 
 namespace lodbench::window {
 namespace {
@@ -124,6 +125,14 @@ TEST(Keys, none_means_two_things_and_every_one_is_found) {
     }
     EXPECT_EQ(actions.size(), std::size_t(Action::quit) + 1);
     EXPECT_EQ(action_of('J', false), std::nullopt);
+}
+
+TEST(Keys, are_in_the_documents_as_help_has_them) {
+    const std::string page = test::text_of(LODBENCH_SOURCE_DIR "/docs/window.md");
+    for (const KeyBinding& binding : key_bindings()) {
+        EXPECT_THAT(page, testing::HasSubstr(std::string("| `") + binding.name + "` | " +
+                                             binding.does + " |\n"));
+    }
 }
 
 TEST(FrameTimes, keep_the_last_and_give_nearest_rank_percentiles) {
