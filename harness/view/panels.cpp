@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "picture/color_map.h"
 #include "results/cell_groups.h"
 #include "run/knob.h"
 #include "view/viewer.h"
@@ -20,8 +21,32 @@ using window::Style;
 constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255), kYellow = IM_COL32(255, 220, 0, 255),
                 kBudget = IM_COL32(255, 90, 90, 255);
 
+/// Wraps at the panel's edge.
 void text(const std::string& words) {
+    ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(words.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+/// Of the panel at the bottom: a line of widgets and one of text.
+float path_height() {
+    return ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeight() +
+           2 * ImGui::GetStyle().WindowPadding.y;
+}
+
+/// The colours of the heat map, from none to the scale's top.
+void color_bar() {
+    constexpr int kSteps = 32;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = 6 * ImGui::GetTextLineHeight(), height = ImGui::GetFrameHeight();
+    for (int i = 0; i < kSteps; ++i) {
+        const picture::Rgb color = picture::error_color((i + 0.5) / kSteps);
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            {at.x + width * float(i) / kSteps, at.y},
+            {at.x + width * float(i + 1) / kSteps, at.y + height},
+            IM_COL32(color.r, color.g, color.b, 255));
+    }
+    ImGui::Dummy({width, height});
 }
 
 std::string figure(const std::optional<double>& value, const char* unit) {
@@ -82,8 +107,7 @@ void Viewer::draw_pictures() {
             apart ? method(sides_[0]).id + " - " + method(sides_[1]).id + ", 8 times as bright"
                   : method(side).id;
         const float line = ImGui::GetTextLineHeightWithSpacing();
-        const float above = pane.method == 0 ? 2 : 1;
-        list.AddText({from.x + line, size.y - (2 + above) * line}, kWhite, name.c_str());
+        list.AddText({from.x + line, size.y - path_height() - line}, kWhite, name.c_str());
         if (!side.words.empty()) {
             list.AddText(nullptr, 0, {from.x + line, size.y / 2}, kBudget, side.words.c_str(),
                          nullptr, std::max(to.x - from.x - 2 * line, line));
@@ -123,7 +147,7 @@ void Viewer::draw_controls() {
         const float x = i == 0 ? line / 2 : ImGui::GetIO().DisplaySize.x - width - line / 2;
         ImGui::SetNextWindowPos({x, line / 2}, ImGuiCond_Always);
         ImGui::SetNextWindowSize({width, 0});
-        ImGui::SetNextWindowBgAlpha(0.75F);
+        ImGui::SetNextWindowBgAlpha(0.85F);
         ImGui::Begin(i == 0 ? "first" : "second", nullptr,
                      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav |
@@ -235,7 +259,8 @@ void Viewer::draw_figures(const Side& side) {
     if (side.measured) {
         const results::FrameRecord& m = *side.measured;
         ImGui::Separator();
-        text(fmt::format("measured: frame {}, as a run does", m.frame));
+        text(side.measured_flown ? fmt::format("measured: frame {}, as a run does", m.frame)
+                                 : std::string("measured: this view"));
         text(fmt::format("triangles {}, of them with an area {}", count(m.triangles),
                          count(m.triangles_nondegenerate)));
         text(fmt::format("screen error P99.9 {}, max {}", figure(m.screen_p999_px, "px"),
@@ -260,9 +285,9 @@ void Viewer::draw_figures(const Side& side) {
 void Viewer::draw_path() {
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({0, size.y - 2 * line - 8});
-    ImGui::SetNextWindowSize({size.x, 2 * line + 8});
-    ImGui::SetNextWindowBgAlpha(0.6F);
+    ImGui::SetNextWindowPos({0, size.y - path_height()});
+    ImGui::SetNextWindowSize({size.x, path_height()});
+    ImGui::SetNextWindowBgAlpha(0.85F);
     ImGui::Begin("path", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoFocusOnAppearing);
@@ -283,9 +308,11 @@ void Viewer::draw_path() {
     words += fmt::format("   {}   {}", window::name_of(layout_), window::name_of(style_));
     if (frozen_) words += culling_frozen_ ? "   frozen" : "   selection frozen, culling not";
     if (top_) words += "   from above";
-    text(words + "   F1: keys");
+    ImGui::TextUnformatted((words + "   F1: keys").c_str());
     if (style_ == Style::errors) {
         auto scale = float(scale_px_);
+        ImGui::SameLine();
+        color_bar();
         ImGui::SameLine();
         ImGui::SetNextItemWidth(8 * line);
         if (ImGui::SliderFloat("px", &scale, 0.1F, 20, "to %.2g", ImGuiSliderFlags_Logarithmic)) {
@@ -293,7 +320,7 @@ void Viewer::draw_path() {
         }
         note_item("scale");
     }
-    text(message_);
+    ImGui::TextUnformatted(message_.c_str());
     ImGui::End();
 }
 

@@ -295,6 +295,7 @@ void Viewer::take_answer(Side& side, const Json::Value& answer) {
         const std::string where = "answer";
         results::decode(answer["record"], record, {where, ""});
         side.measured = record;
+        side.measured_flown = answer["flown"].asBool();
         Json::Value event = answer;
         event["event"] = "measured";
         event["method"] = method(side).id;
@@ -339,6 +340,12 @@ void Viewer::ask_for_picture(Side& side) {
         ++side.repeats;
     } else {
         side.repeats = 0;
+        // They were of another view.
+        if (side.asked && !(side.asked->view.position == request.view.position &&
+                            side.asked->view.orientation == request.view.orientation)) {
+            side.measured.reset();
+            side.probe.reset();
+        }
     }
     side.repeat_at = now + kRepeatS;
     side.asked = request;

@@ -53,7 +53,7 @@ struct Side {
     Viewport texture_size{0, 0};
     window::FrameTimes times;
     std::optional<results::FrameRecord> measured;
-    bool measuring = false;
+    bool measuring = false, measured_flown = false;
     std::optional<window::ProbeReply> probe;
     std::string words;  ///< why nothing is seen, or what fell
 };

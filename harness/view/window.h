@@ -39,8 +39,7 @@ public:
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// Waits for events for so long, endlessly where it is negative, and handles them. True where
-    /// any came, but for the end of the time.
+    /// Waits for events for so many seconds, endlessly where that is negative, and handles them.
     void wait(double seconds);
     /// From any thread: ends a wait.
     static void wake();
