@@ -89,10 +89,16 @@ Window& Window::of(GLFWwindow* window) {
     return self;
 }
 
-glm::dvec2 Window::cursor() const {
+/// Of an event, not of now: a pointer may have moved on before a press is heard.
+glm::dvec2 Window::cursor() {
+    if (heard_at_) return *heard_at_;
     double x = 0, y = 0;
-    int width = 1, height = 1;
     glfwGetCursorPos(window_, &x, &y);
+    return in_window(x, y);
+}
+
+glm::dvec2 Window::in_window(double x, double y) const {
+    int width = 1, height = 1;
     glfwGetWindowSize(window_, &width, &height);
     return {x / std::max(width, 1), y / std::max(height, 1)};
 }
@@ -112,9 +118,10 @@ void Window::listen() {
         if (action == GLFW_PRESS && ImGui::GetIO().WantCaptureMouse) return;
         self.events_.button(button, action == GLFW_PRESS, self.cursor());
     });
-    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) {
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
         Window& self = of(w);
-        self.events_.moved(self.cursor());
+        self.heard_at_ = self.in_window(x, y);
+        self.events_.moved(*self.heard_at_);
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double notches) {
         Window& self = of(w);

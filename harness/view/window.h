@@ -3,7 +3,7 @@
 
 #include <functional>
 #include <glm/vec2.hpp>
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "api/camera.h"
@@ -60,11 +60,13 @@ public:
 private:
     static Window& of(GLFWwindow* window);
     void listen();
-    [[nodiscard]] glm::dvec2 cursor() const;
+    [[nodiscard]] glm::dvec2 cursor();
+    [[nodiscard]] glm::dvec2 in_window(double x, double y) const;  ///< as fractions
 
     GLFWwindow* window_ = nullptr;
     WindowEvents events_;
     double scale_ = 1;
+    std::optional<glm::dvec2> heard_at_;  ///< where the pointer was when it moved last
     bool touched_ = true;
 };
 

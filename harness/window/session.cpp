@@ -117,6 +117,7 @@ void Session::open(const run::CellSpec& spec) {
     Json::Value message;
     message["do"] = "open";
     message["spec"] = run::write_spec(spec);
+    if (timer_trusted_ && timer_device_ == spec.device) message["timer_trusted"] = *timer_trusted_;
     ask(message);
 }
 
@@ -134,6 +135,10 @@ void Session::note(const Json::Value& answer) {
         // It drew: this is what one can go back to.
         if (answer["did"] == "picture" && asked_ && method_ == asked_->method) good_ = asked_;
         return;
+    }
+    if (answer.isMember("timer_trusted") && asked_) {
+        timer_trusted_ = answer["timer_trusted"].asBool();
+        timer_device_ = asked_->device;
     }
     method_ = answer.isMember("method") ? answer["method"].asString() : std::string();
 }

@@ -77,6 +77,8 @@ private:
     std::optional<run::HangWatch> hang_;
     std::optional<run::CellSpec> asked_, good_;  // to be opened; the last that was
     std::string method_, failed_, fallen_, asked_to_end_;
+    std::optional<bool> timer_trusted_;  // of timer_device_: it is tested once
+    std::string timer_device_;
     int waiting_ = 0;
     bool answered_ = false;  // the process that runs now
 };

@@ -29,10 +29,9 @@ TEST(Frames, pictures_of_method_and_reference_are_numbered_with_the_rate_beside_
     const ScratchFolder scratch;
     const fs::path scenario = tiny_scenario(scratch.path(), "");
     const fs::path out = scratch.path() / "film";
-    const Finished done = run_lodbench(
-        {"frames", "full-grid", scenario.string(), "-o", out.string(), "--override",
-         "flight.pitch=-60"},
-        scratch.path());
+    const Finished done = run_lodbench({"frames", "full-grid", scenario.string(), "-o",
+                                        out.string(), "--override", "flight.pitch=-60"},
+                                       scratch.path());
     ASSERT_EQ(done.status, 0) << done.output;
     const Json::Value about = frames_json(out);
     EXPECT_EQ(about["rate_hz"].asDouble(), 60);
@@ -93,6 +92,26 @@ TEST(Frames, run_flies_a_camera_too_and_refuses_what_is_none) {
     const Json::Value flight =
         results::parse_sealed(text_of(out / "flights/tiny.json"), "flights/tiny.json");
     EXPECT_EQ(flight["positions"][1][1].asDouble(), 20.125) << flight;
+    const fs::path csv = scratch.path() / "path.csv";
+    std::ofstream(csv) << "frame,x,y,z,heading,pitch,roll\n0,20.1,20.7,300.3,12.5,-60,0\n"
+                          "1,20.30000000000001,20.7,300.3,12.5,-60,0\n";
+    const fs::path recorded = scratch.path() / "recorded";
+    done = run_lodbench({"run", scenario.string(), "-m", "full-grid", "--flight", csv.string(),
+                         "--out", recorded.string()},
+                        scratch.path());
+    ASSERT_EQ(done.status, 0) << done.output;
+    const Json::Value positions = results::parse_sealed(text_of(recorded / "flights/tiny.json"),
+                                                        "flights/tiny.json")["positions"];
+    ASSERT_EQ(positions.size(), 2U);
+    EXPECT_EQ(positions[0][0].asDouble(), 20.1);
+    EXPECT_NEAR(positions[1][0].asDouble(), 20.3, 1e-9);  // rounded for the record
+    EXPECT_EQ(positions[1][2].asDouble(), 300.3);
+    const fs::path mesh = scratch.path() / "mesh.ply";
+    done = run_lodbench({"mesh", "full-grid", scenario.string(), "--flight", csv.string(),
+                         "--frame", "1", "-o", mesh.string()},
+                        scratch.path());
+    ASSERT_EQ(done.status, 0) << done.output;
+    EXPECT_THAT(text_of(mesh), HasSubstr("camera_position_m 20.30000000000001 20.7"));
     done = run_lodbench({"run", scenario.string(), "--camera", "camera:1,2"}, scratch.path());
     EXPECT_EQ(done.status, 2);
     EXPECT_THAT(done.output, HasSubstr("--camera: \"camera:1,2\" is no camera"));

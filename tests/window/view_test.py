@@ -323,8 +323,7 @@ class View(unittest.TestCase):
         fell = window.wait(lambda e: e["event"] == "fell")
         self.assertEqual(fell["words"], "'segfaults' of segfaults.so fell: segmentation fault (signal 11), in draw")
         again = window.wait(lambda e: e["event"] == "opened" and e["method"] == "full-grid")
-        self.assertNotEqual(again["process"], before)
-        self.assertLess(again["seconds"] - fell["seconds"], 1)
+        self.assertNotEqual(again["process"], before)  # how soon, session_gl_test says
         self.finish(window)
 
     def test_help_overlay_and_screenshot(self):
