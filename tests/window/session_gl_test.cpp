@@ -202,6 +202,7 @@ TEST(Session, program_that_never_answers_is_not_started_again_and_again) {
     }
     EXPECT_EQ(fell, "'full-grid' of full_grid.so fell: the process exited with status 1");
     EXPECT_EQ(session.process(), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // for another to start and end
     EXPECT_THAT(session.take(), testing::IsEmpty());
     EXPECT_EQ(session.fallen(), "");
 }
