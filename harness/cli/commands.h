@@ -25,6 +25,8 @@ void add_baseline(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_trend(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
+void add_frames(CLI::App& app, int& status);
+void add_view(CLI::App& app, int& status);
 void add_terrain(CLI::App& app, int& status);
 void add_new_method(CLI::App& app, int& status);
 void add_validate(CLI::App& app, int& status);

@@ -14,9 +14,10 @@ int main(int argc, char** argv) {
     int status = 0;
     using namespace lodbench::cli;
     for (const auto add :
-         {add_list, add_describe, add_run, add_sweep, add_match, add_economy, add_reproduce,
-          add_extremes, add_plan, add_merge, add_compare, add_baseline, add_report, add_trend, add_cell, add_mesh,
-          add_terrain, add_new_method, add_validate}) {
+         {add_list,      add_describe,   add_run,     add_sweep, add_match,   add_economy,
+          add_reproduce, add_extremes,   add_plan,    add_merge, add_compare, add_baseline,
+          add_report,    add_trend,      add_cell,    add_mesh,  add_frames,  add_view,
+          add_terrain,   add_new_method, add_validate}) {
         add(app, status);
     }
     return run_program(app, argc, argv, status);

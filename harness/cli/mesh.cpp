@@ -14,6 +14,7 @@
 #include "base/files.h"
 #include "base/isolated.h"
 #include "cli/commands.h"
+#include "cli/method_settings.h"
 #include "cli/options.h"
 #include "cli/terrain_options.h"
 #include "results/cell_groups.h"
@@ -41,49 +42,6 @@ struct MeshOptions {
     bool before_clipping = false;
     bool json = false;
 };
-
-/// The scenario's own settings of the method, then what --set says, as `param=value` or
-/// `method.param=value`.
-run::Settings settings_of(const MeshOptions& options, const scenario::Scenario& scenario,
-                          const run::MethodInfo& method) {
-    run::Settings settings;
-    const auto put = [&](const std::string& name, const std::string& value) {
-        for (auto& setting : settings) {
-            if (setting.first == name) {
-                setting.second = value;
-                return;
-            }
-        }
-        settings.emplace_back(name, value);
-    };
-    if (const auto kept = run::kept_knob(scenario, method)) put(kept->first, kept->second);
-    run::Settings chosen;
-    for (const std::string& text : options.settings) {
-        const run::Setting setting = run::parse_setting(text, "[METHOD.]PARAM=VALUE");
-        if (!setting.method.empty() && setting.method != options.method) {
-            throw InputError(fmt::format("--set {}: the mesh is of '{}', not of '{}'", text,
-                                         options.method, setting.method));
-        }
-        chosen.emplace_back(setting.name, setting.value);
-    }
-    for (const scenario::MethodRequest& request : scenario.methods) {
-        if (request.id != options.method) continue;
-        for (const auto& [name, values] : request.settings) {
-            const bool overridden =
-                std::any_of(chosen.begin(), chosen.end(),
-                            [&](const auto& setting) { return setting.first == name; });
-            if (values.size() == 1) put(name, values.front());
-            if (values.size() > 1 && !overridden) {
-                throw InputError(
-                    fmt::format("{}: {} is swept over {} values; choose one with --set {}={}",
-                                request.where, name, values.size(), name, values.front()));
-            }
-        }
-        break;
-    }
-    for (const auto& [name, value] : chosen) put(name, value);
-    return settings;
-}
 
 /// Flies to the frame in lockstep, as a method may keep state from frame to frame, and writes the
 /// file. Returns what is to be printed.
@@ -152,7 +110,7 @@ int run_mesh(const MeshOptions& options) {
     }
     const run::MethodInfo method =
         run::find_method(find_plugins(options.plugin_dirs), options.method, "mesh");
-    const run::Settings settings = settings_of(options, scenario, method);
+    const run::Settings settings = method_settings(scenario, method, options.settings);
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
     const std::shared_ptr<run::VitalSigns> signs = run::map_signs();
     const base::Answer answer = base::run_isolated(

@@ -1,11 +1,13 @@
 #include "cli/options.h"
 
 #include <fmt/format.h>
+#include <json/writer.h>
 
 #include <charconv>
 #include <cmath>
 
 #include "api/error.h"
+#include "scenario/camera_string.h"
 
 namespace lodbench::cli {
 
@@ -25,6 +27,40 @@ Viewport parse_size(const std::string& text) {
     }
     throw InputError(
         fmt::format("--size {}: expected WIDTHxHEIGHT, each 1..{}, as 640x480", text, kLargest));
+}
+
+/// As TOML has it in an override.
+std::string quoted(const std::string& text) {
+    return Json::valueToQuotedString(text.c_str());
+}
+
+/// --camera and --flight: another flight in the place of the scenario's.
+void add_other_flights(CLI::App& command, scenario::Overrides& overrides) {
+    const auto fly = [&overrides](const std::string& flight, const std::string& where) {
+        overrides.set("flight", flight, where);
+        // Of the scenario's own flight.
+        overrides.set("measure.shots", "[0]", where);
+        overrides.set("measure.economy", "[]", where);
+    };
+    CLI::Option* const camera = command.add_option_function<std::string>(
+        "--camera",
+        [fly](const std::string& text) {
+            static_cast<void>(scenario::parse_camera(text, "--camera"));
+            fly(fmt::format("{{ kind = \"still\", camera = {} }}", quoted(text)), "--camera");
+        },
+        "stand there, in place of the flight: camera:X,Y,Z:HEADING,PITCH,ROLL:FOV:NEAR, as "
+        "`lodbench view` copies it");
+    command
+        .add_option_function<std::string>(
+            "--flight",
+            [fly](const std::string& file) {
+                const std::string path = std::filesystem::absolute(file).string();
+                fly(fmt::format("{{ kind = \"recorded\", file = {} }}", quoted(path)),
+                    "--flight " + file);
+            },
+            "fly a recorded path (CSV, as `lodbench view` records it) in place of the scenario's")
+        ->type_name("FILE")
+        ->excludes(camera);
 }
 
 }  // namespace
@@ -54,6 +90,7 @@ void add_overrides(CLI::App& command, scenario::Overrides& overrides) {
             },
             "viewport in pixels, as 640x480")
         ->type_name("WIDTHxHEIGHT");
+    add_other_flights(command, overrides);
     command
         .add_option_function<std::vector<std::string>>(
             "--override",

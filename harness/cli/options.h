@@ -40,8 +40,8 @@ CLI::Option* add_override(CLI::App& command, scenario::Overrides& overrides,
         },
         help);
 }
-/// --frames, --size, and --override for every other key; they throw InputError while the command
-/// line is read.
+/// --frames, --size, --camera, --flight, and --override for every other key; they throw InputError
+/// while the command line is read.
 void add_overrides(CLI::App& command, scenario::Overrides& overrides);
 
 /// --seed, any whole number of 64 bits without a sign; throws InputError while the command line is

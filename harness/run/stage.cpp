@@ -272,7 +272,10 @@ void Stage::draw_reference_picture(const std::shared_ptr<const terrain::WholeTer
 }
 
 void Stage::draw_picture(bool wireframe) {
-    const View view = picture_view(camera_);
+    draw_picture(picture_view(camera_), wireframe);
+}
+
+void Stage::draw_picture(const View& view, bool wireframe) {
     draw(view);
     if (!wireframe) return;
     fill_blocks(view, true);

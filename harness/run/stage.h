@@ -76,6 +76,8 @@ public:
     /// Clears the framebuffer and draws the frozen selection from the selected camera. `wireframe`
     /// draws the triangles' edges over the shaded picture.
     void draw_picture(bool wireframe = false);
+    /// The same through any view, which may look at the selection from elsewhere.
+    void draw_picture(const View& view, bool wireframe);
     /// Prepares the frame (framebuffer, state, clear) and draws through `view`. The timing replay
     /// calls it so that nothing but clear, two small uploads and the method's draw is in a frame.
     void draw(const View& view);

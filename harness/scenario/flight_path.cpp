@@ -184,6 +184,21 @@ private:
     glm::dvec3 centre_;
 };
 
+class StillPath final : public FlightPath {
+public:
+    StillPath(const PathSpec& spec, int frames) : frames_(frames), camera_(spec.standing.value()) {}
+
+    void place(int frame, Camera& camera) const override {
+        require_frame(frame, frames_);
+        camera.position = camera_.position;
+        camera.orientation = camera_.orientation;
+    }
+
+private:
+    int frames_;
+    Camera camera_;
+};
+
 class RecordedPath final : public FlightPath {
 public:
     RecordedPath(const PathSpec& spec, int frames)
@@ -219,6 +234,25 @@ glm::dquat orientation_of(double heading, double pitch, double roll) {
                           glm::angleAxis(glm::radians(roll), glm::dvec3(0, 1, 0)) * north);
 }
 
+double rounded_angle(double degrees) {
+    constexpr double kPerDegree = 1e4;
+    return std::round(degrees * kPerDegree) / kPerDegree;
+}
+
+glm::dvec3 angles_of(const glm::dquat& orientation) {
+    const glm::dvec3 forward = orientation * glm::dvec3(0, 0, -1);
+    const double pitch = std::asin(std::clamp(forward.z, -1.0, 1.0));
+    const double heading = std::atan2(forward.x, forward.y);
+    // What is left beside heading and pitch turns about the line of sight.
+    const glm::dquat level = orientation_of(glm::degrees(heading), glm::degrees(pitch), 0);
+    const glm::dvec3 right = glm::conjugate(level) * (orientation * glm::dvec3(1, 0, 0));
+    const double roll = std::atan2(-right.y, right.x);
+    const double rounded = rounded_angle(glm::degrees(heading) + (heading < 0 ? 360 : 0));
+    return glm::dvec3(rounded == 360 ? 0 : rounded, rounded_angle(glm::degrees(pitch)),
+                      rounded_angle(glm::degrees(roll))) +
+           0.0;
+}
+
 double ground_height(const Terrain& terrain, const glm::dvec2& position) {
     if (!std::isfinite(position.x) || !std::isfinite(position.y)) {
         throw ContractError("ground_height: the position is not finite");
@@ -251,6 +285,7 @@ std::unique_ptr<FlightPath> make_path(const PathSpec& spec, int frames, double r
             return std::make_unique<CurvePath>(spec, frames, rate_hz, terrain);
         case PathKind::orbit: return std::make_unique<OrbitPath>(spec, frames, terrain);
         case PathKind::recorded: return std::make_unique<RecordedPath>(spec, frames);
+        case PathKind::still: return std::make_unique<StillPath>(spec, frames);
     }
     throw ContractError("make_path: the kind of path is not one of PathKind");
 }

@@ -26,7 +26,7 @@ struct Keyframe {
     double pitch = 0, roll = 0;
 };
 
-enum class PathKind { line, spline, orbit, terrain_following, recorded };
+enum class PathKind { line, spline, orbit, terrain_following, recorded, still };
 
 /// A path as written in a scenario; which fields count depends on the kind.
 ///
@@ -45,6 +45,7 @@ enum class PathKind { line, spline, orbit, terrain_following, recorded };
 ///                    double frame.
 /// terrain_following  keyframes as for line or spline, their z ignored: `height` above the ground.
 /// recorded           `recorded`: CSV, world metres and degrees, one row a frame.
+/// still              every frame from `standing`, whose lens is the scenario's.
 ///
 /// A line, spline or terrain-following path without speed is spread evenly over the frames, first
 /// frame on the first keyframe, last frame on the last.
@@ -63,6 +64,7 @@ struct PathSpec {
     std::optional<double>
         margin;  ///< terrain_following: least height above ground; default height / 2
     std::filesystem::path recorded;  ///< CSV: frame,x,y,z,heading,pitch,roll
+    std::optional<Camera> standing;  ///< still: its viewport does not count
     std::string where;               ///< "scenario.toml:12", put in front of messages
 };
 
@@ -83,6 +85,14 @@ public:
 /// The camera's orientation for heading, pitch and roll in degrees, with the conventions of
 /// `Keyframe`.
 [[nodiscard]] glm::dquat orientation_of(double heading, double pitch, double roll);
+
+/// Heading [0, 360), pitch and roll (-180, 180] in degrees, rounded as `rounded_angle` does. An
+/// orientation that was made of such angles gives them back, but looking straight up or down, where
+/// heading and roll are one.
+[[nodiscard]] glm::dvec3 angles_of(const glm::dquat& orientation);
+
+/// To 1e-4 of a degree: far finer than a pixel, and short to write.
+[[nodiscard]] double rounded_angle(double degrees);
 
 /// Height of the ground at world x, y in metres: bilinear between the samples; beyond the terrain
 /// that of the nearest point of its border.

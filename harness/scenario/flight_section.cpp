@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scenario/camera_string.h"
+
 namespace lodbench::scenario {
 namespace {
 
@@ -37,7 +39,7 @@ void read_line(Section& flight, std::size_t dimensions, PathSpec& spec) {
         if (*end == *start) {
             flight.refuse("end",
                           "the same as start; move one of them, or, for a camera that stands "
-                          "still, fly kind = \"orbit\" with turns = 0 or a recorded flight");
+                          "still, fly kind = \"still\"");
         }
         key.position = as_position(*end);
         spec.keyframes.push_back(key);
@@ -105,10 +107,11 @@ void read_terrain_following(Section& flight, PathSpec& spec) {
 
 PathKind read_kind(Section& flight) {
     const auto kind = flight.text("kind");
-    const std::vector<std::string> known = {"line", "spline", "orbit", "terrain-following",
-                                            "recorded"};
-    constexpr PathKind kKinds[] = {PathKind::line, PathKind::spline, PathKind::orbit,
-                                   PathKind::terrain_following, PathKind::recorded};
+    const std::vector<std::string> known = {"line",     "spline", "orbit", "terrain-following",
+                                            "recorded", "still"};
+    constexpr PathKind kKinds[] = {PathKind::line,     PathKind::spline,
+                                   PathKind::orbit,    PathKind::terrain_following,
+                                   PathKind::recorded, PathKind::still};
     if (!kind) flight.require("kind", Section::known_names("", known));
     for (std::size_t i = 0; i < known.size(); ++i) {
         if (*kind == known[i]) return kKinds[i];
@@ -136,7 +139,7 @@ PathSpec read_path(Section& flight, const std::filesystem::path& folder,
     PathSpec spec;
     spec.where = flight.where();
     spec.kind = read_kind(flight);
-    if (spec.kind != PathKind::recorded) {
+    if (spec.kind != PathKind::recorded && spec.kind != PathKind::still) {
         spec.relative = flight.boolean("relative").value_or(false);
     }
     if (spec.kind == PathKind::line || spec.kind == PathKind::spline ||
@@ -156,6 +159,12 @@ PathSpec read_path(Section& flight, const std::filesystem::path& folder,
             const auto file = flight.text("file");
             if (!file) flight.require("file", "write the CSV file of the recorded flight");
             spec.recorded = kept.empty() ? existing_file(flight, "file", *file, folder) : kept;
+            break;
+        }
+        case PathKind::still: {
+            const auto text = flight.text("camera");
+            if (!text) flight.require("camera", "write the camera as `lodbench view` copies it");
+            spec.standing = parse_camera(*text, flight.where("camera"));
             break;
         }
     }

@@ -201,6 +201,27 @@ std::vector<RecordedPlace> parse_recorded(std::string_view text,
     return RecordedText(file).parse(text);
 }
 
+std::string recorded_csv(std::span<const RecordedPlace> places) {
+    std::string text = fmt::format("{}\n", kHeader);
+    for (std::size_t frame = 0; frame < places.size(); ++frame) {
+        text += fmt::format("{}", frame);
+        const RecordedPlace& place = places[frame];
+        for (const glm::dvec3& part : {place.position, place.angles}) {
+            for (const double value : {part.x, part.y, part.z}) {
+                if (!(std::abs(value) <= kMaxMagnitude)) {
+                    throw InputError(fmt::format(
+                        "frame {} of the flight has the number {}, which a recorded flight cannot "
+                        "have: between -1e9 and 1e9 are",
+                        frame, value));
+                }
+                text += fmt::format(",{}", value);
+            }
+        }
+        text += '\n';
+    }
+    return text;
+}
+
 std::vector<RecordedPlace> load_recorded(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) {

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +24,10 @@ struct RecordedPlace {
 /// wrong with; remedy".
 [[nodiscard]] std::vector<RecordedPlace> parse_recorded(std::string_view text,
                                                         const std::filesystem::path& file);
+
+/// What `parse_recorded` reads as the same places to the bit. Throws InputError for a place with a
+/// number beyond 1e9 or not finite.
+[[nodiscard]] std::string recorded_csv(std::span<const RecordedPlace> places);
 
 /// The same from a file of at most 256 MiB.
 [[nodiscard]] std::vector<RecordedPlace> load_recorded(const std::filesystem::path& file);

@@ -175,6 +175,10 @@ void read_flight(Section& top, const std::filesystem::path& folder,
     set(scenario.warmup_flies, flight->boolean("warmup_flies"));
     scenario.path = read_path(*flight, folder, kept);
     flight->refuse_unknown();
+    if (scenario.path.standing) {
+        scenario.vertical_fov = scenario.path.standing->vertical_fov;
+        scenario.near_plane = scenario.path.standing->near_plane;
+    }
     if (scenario.path.kind != PathKind::recorded || frames) return;
     const std::size_t rows = load_recorded(scenario.path.recorded).size();
     const auto lead = std::size_t(scenario.warmup_flies ? scenario.warmup_frames : 0);

@@ -26,6 +26,8 @@ MAY_INCLUDE = {
     "run": {"api", "base", "common", "gl", "platform", "terrain", "scenario", "measure", "results", "picture"},
     "conformance": {"api", "base", "common", "gl", "measure", "results", "run"},
     "extremes": {"api", "base", "terrain", "scenario", "measure", "results", "report", "run"},
+    "window": {"api", "base", "gl", "terrain", "scenario", "measure", "results", "picture", "run"},
+    "view": {"api", "base", "scenario", "terrain", "measure", "results", "picture", "run", "window", "cli"},
     "reproduce": {"api", "base", "terrain", "scenario", "measure", "results", "report", "run"},
 }
 

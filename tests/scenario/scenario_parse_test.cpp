@@ -351,7 +351,7 @@ TEST(Scenario, line_that_stands_still_is_refused_by_its_value_and_what_may) {
         refusal(flight("kind = \"line\"\nstart = [0.5, 0.5, 1000]\nend = [0.5, 0.5, 1000]\n")),
         AllOf(
             StartsWith("flights/least.toml:6: [flight] end = [0.5, 0.5, 1000]: the same as start"),
-            HasSubstr("turns = 0")));
+            HasSubstr("kind = \"still\"")));
 }
 
 TEST(Scenario, name_comes_from_the_file_unless_it_cannot) {
