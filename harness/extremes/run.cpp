@@ -89,7 +89,7 @@ public:
         begin_folder(request.out, request.resume);
         if (request.resume) read_entries();
         matrix_.form = request.quick ? "quick" : "whole";
-        matrix_.version = run::machine_context()["tool_version"].asString();
+        matrix_.version = run::machine_context().tool_version;
         matrix_.began = run::utc_now();
         matrix_.command = request.command_line;
     }
