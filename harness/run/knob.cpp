@@ -79,10 +79,11 @@ private:
     void search() {
         const std::optional<Place> start = probe(knob_.admitted(knob_.start));
         if (!start || met()) return;
-        // Which way leads towards the target is found by going one.
+        // Which way leads towards the target is found by going one. A step nearer says little of
+        // it: an error need not rise with the knob, so the other way is gone too before a target
+        // counts as out of reach.
         for (const double direction : {1.0, -1.0}) {
             Place from = *start;
-            bool nearer = false;
             int farther = 0;  // steps in a row
             while (!met()) {
                 const double knob = knob_at(from.x + direction * step());
@@ -93,10 +94,9 @@ private:
                 // Once may be chance: where a method is far better than asked, its error is noise.
                 farther = std::abs(next->y) > std::abs(from.y) ? farther + 1 : 0;
                 if (farther == 2) break;
-                nearer = nearer || std::abs(next->y) < std::abs(from.y);
                 from = *next;
             }
-            if (met() || nearer) return;
+            if (met()) return;
         }
     }
 

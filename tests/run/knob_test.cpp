@@ -84,17 +84,23 @@ TEST(KnobSearch, needs_few_probes_where_error_goes_like_the_knob) {
     EXPECT_LE(result.probes.size(), 6U);
 }
 
-TEST(KnobSearch, says_unreachable_with_the_best_there_is_and_does_not_look_the_wrong_way) {
+TEST(KnobSearch, says_unreachable_with_the_best_there_is_after_two_steps_the_wrong_way) {
     const auto above = searched(kTau, 5, [](double tau) { return std::min(tau, 3.0); });
     EXPECT_EQ(above.outcome, SearchOutcome::unreachable);
     EXPECT_EQ(above.best->value, 3.0);
-    for (const Probe& probe : above.probes) EXPECT_GE(probe.knob, 1.0);
+    for (const Probe& probe : above.probes) EXPECT_GE(probe.knob, 1.0 / 16);
     const auto below = searched(kGrid, 1, [](double rows) { return 3500 / rows; });
     EXPECT_EQ(below.outcome, SearchOutcome::unreachable);
     EXPECT_EQ(below.best->knob, 2048);
     const auto flat = searched(kTau, 5, [](double) { return 2.0; });
     EXPECT_EQ(flat.outcome, SearchOutcome::unreachable);
     EXPECT_EQ(flat.best->value, 2.0);
+}
+
+TEST(KnobSearch, goes_the_other_way_where_the_first_led_nearer_and_not_there) {
+    const auto result = searched(kTau, 8, [](double tau) { return tau >= 4 ? 48.0 : 145 * tau; });
+    EXPECT_EQ(result.outcome, SearchOutcome::met);
+    EXPECT_LT(result.best->knob, 1);
 }
 
 TEST(KnobSearch, goes_on_where_the_error_is_noise_far_below_the_target) {
