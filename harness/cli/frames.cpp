@@ -11,7 +11,6 @@
 
 #include "base/console.h"
 #include "base/files.h"
-#include "base/isolated.h"
 #include "cli/commands.h"
 #include "cli/method_settings.h"
 #include "cli/options.h"
@@ -20,7 +19,6 @@
 #include "picture/png.h"
 #include "results/json.h"
 #include "results/record_json.h"
-#include "run/exit_status.h"
 #include "run/locations.h"
 #include "run/shared_signs.h"
 #include "run/stage.h"
@@ -170,23 +168,9 @@ int run_frames(const FramesOptions& options) {
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
     make_empty_folder(options.out);
     const std::shared_ptr<run::VitalSigns> signs = run::map_signs();
-    const base::Answer answer = base::run_isolated(
-        options.time_limit_s.value_or(scenario.cell_time_limit_s),
-        [&] { return Filming(options, scenario, method, settings, *signs).film(); });
-    using base::Ending;
-    switch (answer.ending) {
-        case Ending::answered: base::print("{}\n", answer.text); return run::kAllWell;
-        case Ending::refused: throw InputError(answer.text);
-        case Ending::environment_error: throw EnvironmentError(answer.text);
-        case Ending::threw: base::tell("lodbench: {}", answer.text); return run::kCellFailed;
-        case Ending::died:
-        case Ending::timed_out: break;
-    }
-    const run::Call call = signs->call.load();
-    base::tell("lodbench: the process that flew '{}' of plugin {} {}, in frame {}{}", method.id,
-               method.plugin.string(), answer.text, signs->frame.load(),
-               call == run::Call::none ? "" : fmt::format(", in {}", run::name_of(call)));
-    return run::kCellFailed;
+    const auto fly = [&] { return Filming(options, scenario, method, settings, *signs).film(); };
+    return fly_apart(method, options.time_limit_s.value_or(scenario.cell_time_limit_s), *signs, fly,
+                     [&] { return fmt::format(", in frame {}", signs->frame.load()); });
 }
 
 }  // namespace

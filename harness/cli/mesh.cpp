@@ -12,13 +12,11 @@
 
 #include "base/console.h"
 #include "base/files.h"
-#include "base/isolated.h"
 #include "cli/commands.h"
 #include "cli/method_settings.h"
 #include "cli/options.h"
 #include "cli/terrain_options.h"
 #include "results/cell_groups.h"
-#include "run/exit_status.h"
 #include "run/locations.h"
 #include "run/mesh_export.h"
 #include "run/plan.h"
@@ -113,23 +111,9 @@ int run_mesh(const MeshOptions& options) {
     const run::Settings settings = method_settings(scenario, method, options.settings);
     static_cast<void>(run::make_params(method, settings, "--set or scenario " + scenario.name));
     const std::shared_ptr<run::VitalSigns> signs = run::map_signs();
-    const base::Answer answer = base::run_isolated(
-        options.time_limit_s.value_or(scenario.cell_time_limit_s),
-        [&] { return export_mesh(options, scenario, method, settings, *signs); });
-    using base::Ending;
-    switch (answer.ending) {
-        case Ending::answered: base::print("{}\n", answer.text); return run::kAllWell;
-        case Ending::refused: throw InputError(answer.text);
-        case Ending::environment_error: throw EnvironmentError(answer.text);
-        case Ending::threw: base::tell("lodbench: {}", answer.text); return run::kCellFailed;
-        case Ending::died:
-        case Ending::timed_out: break;
-    }
-    const run::Call call = signs->call.load();
-    base::tell("lodbench: the process that flew '{}' of plugin {} {}{}", method.id,
-               method.plugin.string(), answer.text,
-               call == run::Call::none ? "" : fmt::format(", in {}", run::name_of(call)));
-    return run::kCellFailed;
+    const auto fly = [&] { return export_mesh(options, scenario, method, settings, *signs); };
+    return fly_apart(method, options.time_limit_s.value_or(scenario.cell_time_limit_s), *signs,
+                     fly);
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <algorithm>
 
 #include "api/error.h"
+#include "base/console.h"
+#include "base/isolated.h"
+#include "run/exit_status.h"
 #include "run/plan.h"
 
 namespace lodbench::cli {
@@ -48,6 +51,25 @@ run::Settings method_settings(const scenario::Scenario& scenario, const run::Met
     }
     for (const auto& [name, value] : chosen) put(name, value);
     return settings;
+}
+
+int fly_apart(const run::MethodInfo& method, double seconds, const run::VitalSigns& signs,
+              const std::function<std::string()>& fly, const std::function<std::string()>& where) {
+    const base::Answer answer = base::run_isolated(seconds, fly);
+    using base::Ending;
+    switch (answer.ending) {
+        case Ending::answered: base::print("{}\n", answer.text); return run::kAllWell;
+        case Ending::refused: throw InputError(answer.text);
+        case Ending::environment_error: throw EnvironmentError(answer.text);
+        case Ending::threw: base::tell("lodbench: {}", answer.text); return run::kCellFailed;
+        case Ending::died:
+        case Ending::timed_out: break;
+    }
+    const run::Call call = signs.call.load();
+    base::tell("lodbench: the process that flew '{}' of plugin {} {}{}{}", method.id,
+               method.plugin.string(), answer.text, where ? where() : "",
+               call == run::Call::none ? "" : fmt::format(", in {}", run::name_of(call)));
+    return run::kCellFailed;
 }
 
 }  // namespace lodbench::cli

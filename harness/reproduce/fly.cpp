@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "results/folder.h"
 #include "results/json.h"
+#include "scenario/overrides_section.h"
 
 namespace lodbench::reproduce {
 
@@ -17,10 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kMarker = "reproduce.json";
-
-void add(scenario::Overrides& all, const scenario::Overrides& more) {
-    for (const auto& [key, value] : more.values()) all.set(key, value.toml, value.where);
-}
 
 /// The paper's own terrain is flown as it is: not with what makes ours like it.
 scenario::Overrides over_own_terrain(const scenario::Overrides& overrides, const OwnTerrain& own,
@@ -37,13 +34,13 @@ scenario::Overrides overrides_of(const Paper& paper, const Experiment& experimen
                                  const FlightRequest& request) {
     scenario::Overrides overrides = experiment.overrides;
     if (request.quick) {
-        add(overrides, paper.quick);
-        add(overrides, experiment.quick);
+        overrides = scenario::merged(std::move(overrides), paper.quick);
+        overrides = scenario::merged(std::move(overrides), experiment.quick);
     }
     if (request.terrain && !experiment.keeps_terrain) {
         overrides = over_own_terrain(overrides, paper.terrain, *request.terrain);
     }
-    add(overrides, request.overrides);
+    overrides = scenario::merged(std::move(overrides), request.overrides);
     return overrides;
 }
 

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 #include "api/error.h"
 #include "base/printable.h"
 #include "reproduce/paper.h"
 #include "scenario/flight_section.h"
+#include "scenario/overrides_section.h"
 #include "scenario/toml_section.h"
 #include "terrain/toml_file.h"
 
@@ -17,7 +17,9 @@ namespace lodbench::reproduce {
 
 namespace fs = std::filesystem;
 using scenario::Limits;
+using scenario::read_overrides;
 using scenario::Section;
+using scenario::toml_text;
 
 namespace {
 
@@ -53,31 +55,6 @@ std::vector<std::string> texts(Section& section, std::string_view key) {
     if (!good) section.refuse(key, "write a list of texts");
     for (const toml::node& entry : *array) values.push_back(entry.as_string()->get());
     return values;
-}
-
-/// As an override takes it: on one line or several, for parse_toml_value.
-std::string toml_text(const toml::node& node) {
-    toml::array list;
-    node.visit([&](const auto& value) { list.push_back(value); });
-    if (toml::table* table = list[0].as_table()) table->is_inline(true);
-    std::ostringstream stream;
-    stream << list;
-    const std::string text = stream.str();
-    // Without the brackets of `list` and the blanks and line breaks within them.
-    const std::size_t begin = text.find_first_not_of(" \n", text.find('[') + 1);
-    const std::size_t end = text.find_last_not_of(" \n", text.rfind(']') - 1);
-    return text.substr(begin, end + 1 - begin);
-}
-
-/// A table of overrides: keys of a scenario, as "flight.frames", and their values.
-scenario::Overrides read_overrides(Section& section, std::string_view key) {
-    scenario::Overrides overrides;
-    const auto table = section.section(key);
-    if (!table) return overrides;
-    for (const auto& [name, node] : table->table()) {
-        overrides.set(std::string(name.str()), toml_text(node), table->where(name.str()));
-    }
-    return overrides;
 }
 
 // ---- selections --------------------------------------------------------------------------------

@@ -4,9 +4,7 @@
 #include <string>
 
 namespace lodbench::scenario {
-namespace {
 
-/// As an override takes it: on one line or several, for parse_toml_value.
 std::string toml_text(const toml::node& node) {
     toml::array list;
     node.visit([&](const auto& value) { list.push_back(value); });
@@ -19,8 +17,6 @@ std::string toml_text(const toml::node& node) {
     const std::size_t end = text.find_last_not_of(" \n", text.rfind(']') - 1);
     return text.substr(begin, end + 1 - begin);
 }
-
-}  // namespace
 
 Overrides read_overrides(Section& section, std::string_view key) {
     Overrides overrides;
