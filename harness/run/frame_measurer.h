@@ -48,14 +48,6 @@ public:
     /// truth.
     void measure_whole(results::FrameRecord& record);
 
-    /// Of the frames that were measured the one that looks worst, with its pixels; nothing before
-    /// the first and without the truth.
-    [[nodiscard]] const measure::WorstFrame* worst_frame() const {
-        return meter_ && meter_->worst_frame() ? &*meter_->worst_frame() : nullptr;
-    }
-    /// Needs the truth.
-    [[nodiscard]] const measure::ReferenceTerrain& reference() const { return meter_->terrain(); }
-
     /// The truth about the flight; nothing without it.
     void finish(results::CellRecord& cell) const;
     /// The worst frame's picture as PNG; does nothing where no frame was measured.
